@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <deque>
+
+namespace shallow_sand {
+
+/// Velocity of a rigid body: that of its frame's origin, and its angular velocity, both in the grid's frame.
+struct Twist {
+  Eigen::Vector3d linear{0, 0, 0};   ///< [m/s]
+  Eigen::Vector3d angular{0, 0, 0};  ///< [rad/s]
+};
+
+/// Timed poses of a body in the grid's frame; between two of them the origin moves on a straight line and the body
+/// turns about one axis, both at constant rate. Before the first and after the last pose the body rests.
+class Motion {
+ public:
+  /// @throws InvalidParameter if the pose is not finite, its rotation not orthonormal within 1e-3, or `time` not
+  /// after the last one
+  void append(double time, const Eigen::Isometry3d& pose);
+  /// Drops what no query at or after `time` needs.
+  void forgetBefore(double time);
+  bool empty() const { return keys_.empty(); }
+  Eigen::Isometry3d poseAt(double time) const;
+  Twist twistAt(double time) const;  ///< of the segment that begins at or before `time`
+
+ private:
+  struct Key {
+    double time;
+    Eigen::Vector3d position;
+    Eigen::Quaterniond rotation;
+  };
+  /// Index of the segment [key, next key) that holds `time`; negative outside of all.
+  int segmentAt(double time) const;
+  std::deque<Key> keys_;
+};
+
+}  // namespace shallow_sand

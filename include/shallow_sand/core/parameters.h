@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "shallow_sand/core/grid.h"
+
+namespace shallow_sand {
+
+/// A parameter outside of its bounds. what() reads "KEY: FOUND; expected EXPECTED".
+class InvalidParameter : public std::runtime_error {
+ public:
+  InvalidParameter(const std::string& key, const std::string& found, const std::string& expected);
+};
+
+/// Where the sand is. Scene key `grid`.
+struct GridParameters {
+  Eigen::Vector2d size{4.0, 2.0};    ///< extent along x and y [m]; a whole number of cells
+  double spacing = 0.02;             ///< ΔL [m], positive
+  Eigen::Vector2d origin{0.0, 0.0};  ///< corner with the smallest x and y, in `frame` [m]
+  std::string frame = "sand";        ///< tf frame of the sand; z points up
+
+  void validate() const;  ///< @throws InvalidParameter
+  Grid grid() const;      ///< validates, then counts the cells @throws InvalidParameter
+};
+
+/// Dry sand. Scene key `material`.
+struct Material {
+  double friction_angle = 0.5585053606381855;  ///< [rad], 32°; 0 ≤ angle < 90° (paper: θ, μ = tan θ)
+  double layer_fraction = 1.0;                 ///< dilute layer h̄: layer(h) = min(fraction·h, depth); 0 < fraction ≤ 1
+  double layer_depth = 0.1;                    ///< [m], positive, may be infinite (then h̄ = fraction·h)
+
+  void validate() const;  ///< @throws InvalidParameter
+};
+
+enum class Edge {
+  wall,  ///< nothing crosses
+  open   ///< sand that flows out is gone, and counted; nothing flows in
+};
+
+/// The four sides of the grid. Scene key `edges`.
+struct Edges {
+  Edge x_min = Edge::wall;
+  Edge x_max = Edge::wall;
+  Edge y_min = Edge::wall;
+  Edge y_max = Edge::wall;
+};
+
+/// How time is cut into steps. Scene key `solver`.
+struct SolverParameters {
+  double courant = 0.45;             ///< C of Eq. 14 and 34; 0 < C < 1
+  double max_step = 0.01;            ///< no step is longer [s]
+  std::optional<double> fixed_step;  ///< this step instead [s]; a run in which it breaks the bound of `courant` ends
+
+  void validate() const;  ///< @throws InvalidParameter
+};
+
+/// Sand that falls on a disc at a steady rate. Scene key `pours`.
+struct Pour {
+  Eigen::Vector2d position{0.0, 0.0};                    ///< centre of the disc, in the grid's frame [m]
+  double radius = 0.1;                                   ///< [m], positive
+  double rate = 0.0;                                     ///< [m³/s], not negative
+  double start = 0.0;                                    ///< [s]
+  double stop = std::numeric_limits<double>::infinity();  ///< [s], after start
+
+  void validate() const;  ///< @throws InvalidParameter
+};
+
+/// Checks gravity in the grid's frame [m/s²]: finite and pointing below the horizon. @throws InvalidParameter
+void validateGravity(const Eigen::Vector3d& gravity);
+
+}  // namespace shallow_sand

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "shallow_sand/coupling/body_view.h"
+#include "shallow_sand/device/window.h"
+#include "shallow_sand/sim/simulator.h"
+#include "shallow_sand/solver/step.h"
+
+namespace shallow_sand {
+
+/// A body at one instant; `view.field.distance` is filled in by the engine.
+struct PlacedBody {
+  std::size_t body;
+  BodyView view;
+  Window window;  ///< columns it may touch
+};
+
+/// The fields on their backend, and the kernels of a step; it knows no time and no motion.
+class Engine {
+ public:
+  virtual ~Engine() = default;
+
+  virtual void addBody(const DistanceField& field) = 0;
+  /// Adds a disc of sand; returns nothing, pours are numbered from 0. Lengths are relative to the corner of cell (0, 0).
+  virtual void addPour(float center_x, float center_y, float radius) = 0;
+
+  /// Casts the rays of these bodies.
+  virtual void castRays(const std::vector<PlacedBody>& bodies) = 0;
+  /// Moves the sand that the last rays found inside bodies.
+  virtual void displace() = 0;
+  /// Largest speed that the time step must follow (Eq. 14, 34), that of bodies in the sand included. [m/s]
+  virtual float signalSpeed() = 0;
+  virtual void step(float dt) = 0;
+  /// Adds this volume [m³] through a pour.
+  virtual void pour(std::size_t number, double volume) = 0;
+
+  virtual Fields fields() const = 0;
+  virtual double poured() const = 0;       ///< [m³]
+  virtual double left() const = 0;         ///< [m³]
+  virtual double bodyOverlap() const = 0;  ///< at the last rays [m³]
+};
+
+/// Every backend's engine starts from the same values. `fields` are those of a valid state.
+struct EngineStart {
+  Grid grid;
+  SandConstants sand;
+  OpenEdges open;
+  Fields fields;
+};
+
+std::unique_ptr<Engine> makeHostEngine(const EngineStart& start, int threads);
+
+#ifdef SHALLOW_SAND_WITH_CUDA
+/// @throws std::runtime_error with CUDA's own words
+std::unique_ptr<Engine> makeCudaEngine(const EngineStart& start);
+/// Why CUDA cannot be used on this machine; empty if it can.
+std::string cudaUnavailable();
+/// Name of the current CUDA device.
+std::string cudaDeviceName();
+#endif
+
+}  // namespace shallow_sand

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "shallow_sand/bodies/distance_field.h"
+#include "shallow_sand/core/parameters.h"
+
+namespace shallow_sand {
+
+enum class Backend { automatic, cpu, cuda };
+
+/// "auto", "cpu", "cuda".
+std::string toString(Backend backend);
+/// @throws InvalidParameter with key `backend`
+Backend backendFromString(const std::string& name);
+
+struct SimulatorParameters {
+  GridParameters grid;
+  Eigen::Vector3d gravity{0.0, 0.0, -9.81};  ///< in the grid's frame [m/s²]
+  Material material;
+  Edges edges;
+  SolverParameters solver;
+  Backend backend = Backend::automatic;
+  int threads = 0;  ///< of the CPU backend; 0: as many as OpenMP offers
+
+  void validate() const;  ///< @throws InvalidParameter
+};
+
+/// The state of the sand, on the host; one float a cell, row-major, row 0 at the smallest y.
+struct Fields {
+  std::vector<float> bed;         ///< elevation b [m]
+  std::vector<float> depth;       ///< h [m]
+  std::vector<float> momentum_x;  ///< hu [m²/s]
+  std::vector<float> momentum_y;  ///< hv [m²/s]
+};
+
+/// Where the sand went, summed in double precision. [m³]
+struct Ledger {
+  double start = 0.0;
+  double poured = 0.0;  ///< through pours
+  double left = 0.0;    ///< over open edges
+  double now = 0.0;
+  /// |now − (start + poured − left)| / (start + poured); 0 when there never was sand.
+  double error() const;
+};
+
+struct Progress {
+  std::uint64_t steps = 0;
+  std::uint64_t cell_updates = 0;
+  double last_step = 0.0;  ///< [s]
+};
+
+/// The one façade over the solver, its bodies and its backends. Not thread-safe; several may live in one process.
+class Simulator {
+ public:
+  /// `bed` [m] and `depth` [m]: one value a cell, finite, depth not negative.
+  /// @throws InvalidParameter; std::runtime_error if `backend: cuda` is asked for and there is no such device
+  Simulator(const SimulatorParameters& parameters, std::vector<float> bed, std::vector<float> depth);
+  ~Simulator();
+  Simulator(Simulator&&) noexcept;
+  Simulator& operator=(Simulator&&) noexcept;
+
+  const SimulatorParameters& parameters() const;
+  const Grid& grid() const;
+  Backend backend() const;  ///< the one in use: cpu or cuda
+  int threads() const;      ///< of the CPU backend; 1 on the GPU
+  /// One line for the log: which backend runs and, with `automatic`, why.
+  const std::string& backendNotice() const;
+
+  /// Adds a kinematic body and returns its number, counted from 0. It takes part once it has a pose.
+  std::size_t addBody(const std::string& name, std::shared_ptr<const DistanceField> field);
+  /// Tells where a body is at a time [s, of this simulator]; see Motion. @throws InvalidParameter naming the body
+  void appendPose(std::size_t body, double time, const Eigen::Isometry3d& pose);
+  /// @throws InvalidParameter
+  void addPour(const Pour& pour);
+
+  /// Runs the sand on by `duration` [s] exactly. @throws InvalidParameter when negative, not finite, or when a fixed
+  /// step breaks its bound
+  void advance(double duration);
+  double time() const;  ///< [s] since construction
+
+  Fields fields() const;
+  Ledger ledger() const;
+  const Progress& progress() const;
+  double maxSpeed() const;           ///< of the sand now [m/s]
+  std::size_t activeCells() const;   ///< cells whose sand moves now
+  double bodyOverlap() const;        ///< sand inside bodies now [m³]
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace shallow_sand

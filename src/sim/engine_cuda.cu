@@ -1,0 +1,23 @@
+#include "shallow_sand/device/cuda_executor.cuh"
+#include "shallow_sand/sim/engine_on.h"
+
+namespace shallow_sand {
+
+std::unique_ptr<Engine> makeCudaEngine(const EngineStart& start) {
+  return std::make_unique<EngineOn<CudaExecutor>>(CudaExecutor(), start);
+}
+
+std::string cudaUnavailable() {
+  int devices = 0;
+  const cudaError_t status = cudaGetDeviceCount(&devices);
+  if (status != cudaSuccess) return cudaGetErrorString(status);
+  return devices > 0 ? "" : "no CUDA-capable device is detected";
+}
+
+std::string cudaDeviceName() {
+  cudaDeviceProp properties{};
+  checkCuda(cudaGetDeviceProperties(&properties, 0), "read the device's name");
+  return properties.name;
+}
+
+}  // namespace shallow_sand

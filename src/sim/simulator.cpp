@@ -1,0 +1,309 @@
+#include "shallow_sand/sim/simulator.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+#include "shallow_sand/bodies/motion.h"
+#include "shallow_sand/sim/engine.h"
+#include "shallow_sand/solver/sand_constants.h"
+
+namespace shallow_sand {
+
+namespace {
+
+Vector3 toVector3(const Eigen::Vector3d& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+void checkField(const std::string& key, const std::vector<float>& values, const Grid& grid, float least) {
+  if (values.size() != grid.cells()) {
+    throw InvalidParameter(key, std::to_string(values.size()) + " values",
+                           std::to_string(grid.cells()) + ", one for each cell");
+  }
+  for (int j = 0; j < grid.rows; ++j) {
+    for (int i = 0; i < grid.columns; ++i) {
+      const float value = values[grid.index(i, j)];
+      if (std::isfinite(value) && value >= least) continue;
+      std::ostringstream found;
+      found << value << " in cell (" << i << ", " << j << ")";
+      throw InvalidParameter(key, found.str(),
+                             least < 0.0f ? "finite metres" : "finite metres that are not negative");
+    }
+  }
+}
+
+double sum(const std::vector<float>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+struct ChosenBackend {
+  Backend backend;
+  int threads;
+  std::string notice;
+};
+
+ChosenBackend chooseBackend(Backend wanted, int threads) {
+  threads = threads > 0 ? threads : omp_get_max_threads();
+  const std::string on_cpu = "running on the CPU with " + std::to_string(threads) + " threads";
+  if (wanted == Backend::cpu) return {Backend::cpu, threads, on_cpu};
+#ifdef SHALLOW_SAND_WITH_CUDA
+  const std::string reason = cudaUnavailable();
+  if (reason.empty()) return {Backend::cuda, 1, "running on the GPU: " + cudaDeviceName()};
+#else
+  const std::string reason = "this build has no CUDA (see SHALLOW_SAND_CUDA in the README)";
+#endif
+  if (wanted == Backend::cuda) {
+    throw InvalidParameter("backend", "cuda, but " + reason, "auto or cpu on this machine");
+  }
+  return {Backend::cpu, threads, "no usable GPU (" + reason + "): " + on_cpu};
+}
+
+}  // namespace
+
+std::string toString(Backend backend) {
+  switch (backend) {
+    case Backend::cpu:
+      return "cpu";
+    case Backend::cuda:
+      return "cuda";
+    default:
+      return "auto";
+  }
+}
+
+Backend backendFromString(const std::string& name) {
+  for (const Backend backend : {Backend::automatic, Backend::cpu, Backend::cuda}) {
+    if (name == toString(backend)) return backend;
+  }
+  throw InvalidParameter("backend", name, "auto, cpu or cuda");
+}
+
+void SimulatorParameters::validate() const {
+  grid.validate();
+  validateGravity(gravity);
+  material.validate();
+  solver.validate();
+  if (threads < 0) throw InvalidParameter("threads", std::to_string(threads), "0 (all) or a positive number");
+}
+
+double Ledger::error() const {
+  const double came = start + poured;
+  return came > 0.0 ? std::abs(now - (came - left)) / came : 0.0;
+}
+
+class Simulator::Implementation {
+ public:
+  struct Body {
+    std::string name;
+    std::shared_ptr<const DistanceField> field;
+    Motion motion;
+  };
+
+  Implementation(const SimulatorParameters& parameters, std::vector<float> bed, std::vector<float> depth)
+      : parameters_(parameters) {
+    parameters_.validate();
+    grid_ = parameters_.grid.grid();
+    checkField("bed", bed, grid_, -std::numeric_limits<float>::infinity());
+    checkField("depth", depth, grid_, 0.0f);
+    start_volume_ = sum(depth) * grid_.cellArea();
+    chosen_ = chooseBackend(parameters_.backend, parameters_.threads);
+
+    EngineStart start;
+    start.grid = grid_;
+    start.sand = sandConstants(grid_, parameters_.gravity, parameters_.material);
+    const auto open = [](Edge edge) { return edge == Edge::open; };
+    const Edges& edges = parameters_.edges;
+    start.open = {open(edges.x_min), open(edges.x_max), open(edges.y_min), open(edges.y_max)};
+    const std::vector<float> rest(grid_.cells(), 0.0f);
+    start.fields = {std::move(bed), std::move(depth), rest, rest};
+#ifdef SHALLOW_SAND_WITH_CUDA
+    if (chosen_.backend == Backend::cuda) engine_ = makeCudaEngine(start);
+#endif
+    if (!engine_) engine_ = makeHostEngine(start, chosen_.threads);
+  }
+
+  void addPour(const Pour& pour) {
+    pour.validate();
+    const Eigen::Vector2d local = pour.position - Eigen::Vector2d(grid_.origin_x, grid_.origin_y);
+    const Eigen::Vector2d size = grid_.spacing * Eigen::Vector2d(grid_.columns, grid_.rows);
+    if ((local.array() < 0.0).any() || (local.array() > size.array()).any()) {
+      std::ostringstream found;
+      found << "[" << pour.position.x() << ", " << pour.position.y() << "]";
+      throw InvalidParameter("position", found.str(), "a place on the grid");
+    }
+    engine_->addPour(static_cast<float>(local.x()), static_cast<float>(local.y()), static_cast<float>(pour.radius));
+    pours_.push_back(pour);
+  }
+
+  void addBody(const std::string& name, std::shared_ptr<const DistanceField> field) {
+    engine_->addBody(*field);
+    bodies_.push_back({name, std::move(field), Motion()});
+  }
+
+  void appendPose(std::size_t body, double time, const Eigen::Isometry3d& pose) {
+    Body& b = bodies_.at(body);
+    try {
+      b.motion.append(time, pose);
+    } catch (const InvalidParameter& problem) {
+      throw InvalidParameter("body " + b.name, problem.what(), "a valid pose");
+    }
+    b.motion.forgetBefore(time_);
+  }
+
+  void advance(double duration) {
+    if (!(duration >= 0.0) || !std::isfinite(duration)) {
+      throw InvalidParameter("duration", std::to_string(duration), "seconds, finite and not negative");
+    }
+    const double end = time_ + duration;
+    while (time_ < end) substep(end);
+    if (!bodies_.empty()) castRays();
+  }
+
+  void substep(double end) {
+    if (!bodies_.empty()) {
+      castRays();
+      engine_->displace();
+    }
+    const double step = std::min(stepBound(), end - time_);
+    const double next = step < end - time_ ? time_ + step : end;
+    engine_->step(static_cast<float>(step));
+    for (std::size_t k = 0; k < pours_.size(); ++k) {
+      const double seconds = std::min(next, pours_[k].stop) - std::max(time_, pours_[k].start);
+      if (seconds > 0.0 && pours_[k].rate > 0.0) engine_->pour(k, seconds * pours_[k].rate);
+    }
+    time_ = next;
+    progress_.last_step = step;
+    progress_.steps += 1;
+    progress_.cell_updates += grid_.cells();
+  }
+
+  /// Eq. 14 and 34. [s]
+  double stepBound() {
+    const SolverParameters& solver = parameters_.solver;
+    const double speed = engine_->signalSpeed();
+    const double bound = solver.courant * grid_.spacing / std::max(speed, 1e-9);
+    if (!solver.fixed_step) return std::min(bound, solver.max_step);
+    if (*solver.fixed_step > bound) {
+      std::ostringstream expected;
+      expected << "at most " << bound << " s at " << time_ << " s, where waves and bodies move at " << speed
+               << " m/s (courant · spacing / speed)";
+      throw InvalidParameter("solver.fixed_step", std::to_string(*solver.fixed_step), expected.str());
+    }
+    return *solver.fixed_step;
+  }
+
+  void castRays() {
+    std::vector<PlacedBody> placed;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      if (bodies_[k].motion.empty()) continue;
+      PlacedBody body = place(k);
+      if (!body.window.empty()) placed.push_back(body);
+    }
+    engine_->castRays(placed);
+  }
+
+  PlacedBody place(std::size_t number) const {
+    const Body& body = bodies_[number];
+    const DistanceField& field = *body.field;
+    Eigen::Isometry3d pose = body.motion.poseAt(time_);
+    const Twist twist = body.motion.twistAt(time_);
+    pose.pretranslate(-Eigen::Vector3d(grid_.origin_x, grid_.origin_y, 0.0));
+
+    PlacedBody placed;
+    placed.body = number;
+    BodyView& view = placed.view;
+    view.field = field.view(nullptr);
+    const Eigen::Matrix3d to_body = pose.linear().transpose();
+    view.axis_x = toVector3(to_body.col(0));
+    view.axis_y = toVector3(to_body.col(1));
+    view.axis_z = toVector3(to_body.col(2));
+    view.position = toVector3(pose.translation());
+    view.linear = toVector3(twist.linear);
+    view.angular = toVector3(twist.angular);
+    Eigen::AlignedBox3d box;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3d steps(corner & 1 ? field.samples[0] - 1 : 0, corner & 2 ? field.samples[1] - 1 : 0,
+                                  corner & 4 ? field.samples[2] - 1 : 0);
+      box.extend(pose * (field.origin + field.spacing * steps));
+    }
+    view.low = toVector3(box.min());
+    view.high = toVector3(box.max());
+    placed.window = windowOf(box);
+    return placed;
+  }
+
+  /// Cells whose centre may lie under the box.
+  Window windowOf(const Eigen::AlignedBox3d& box) const {
+    const auto clamp = [&](double position, int count) {
+      return static_cast<int>(std::clamp(std::floor(position / grid_.spacing), 0.0, static_cast<double>(count)));
+    };
+    return {clamp(box.min().x(), grid_.columns), clamp(box.min().y(), grid_.rows),
+            clamp(box.max().x() + grid_.spacing, grid_.columns), clamp(box.max().y() + grid_.spacing, grid_.rows)};
+  }
+
+  Ledger ledger() const {
+    return {start_volume_, engine_->poured(), engine_->left(), sum(engine_->fields().depth) * grid_.cellArea()};
+  }
+
+  SimulatorParameters parameters_;
+  Grid grid_;
+  ChosenBackend chosen_;
+  std::unique_ptr<Engine> engine_;
+  std::vector<Body> bodies_;
+  std::vector<Pour> pours_;
+  double start_volume_ = 0.0;
+  double time_ = 0.0;
+  Progress progress_;
+};
+
+Simulator::Simulator(const SimulatorParameters& parameters, std::vector<float> bed, std::vector<float> depth)
+    : implementation_(std::make_unique<Implementation>(parameters, std::move(bed), std::move(depth))) {}
+Simulator::~Simulator() = default;
+Simulator::Simulator(Simulator&&) noexcept = default;
+Simulator& Simulator::operator=(Simulator&&) noexcept = default;
+
+const SimulatorParameters& Simulator::parameters() const { return implementation_->parameters_; }
+const Grid& Simulator::grid() const { return implementation_->grid_; }
+Backend Simulator::backend() const { return implementation_->chosen_.backend; }
+int Simulator::threads() const { return implementation_->chosen_.threads; }
+const std::string& Simulator::backendNotice() const { return implementation_->chosen_.notice; }
+
+std::size_t Simulator::addBody(const std::string& name, std::shared_ptr<const DistanceField> field) {
+  implementation_->addBody(name, std::move(field));
+  return implementation_->bodies_.size() - 1;
+}
+void Simulator::appendPose(std::size_t body, double time, const Eigen::Isometry3d& pose) {
+  implementation_->appendPose(body, time, pose);
+}
+void Simulator::addPour(const Pour& pour) { implementation_->addPour(pour); }
+void Simulator::advance(double duration) { implementation_->advance(duration); }
+double Simulator::time() const { return implementation_->time_; }
+
+Fields Simulator::fields() const { return implementation_->engine_->fields(); }
+Ledger Simulator::ledger() const { return implementation_->ledger(); }
+const Progress& Simulator::progress() const { return implementation_->progress_; }
+double Simulator::bodyOverlap() const { return implementation_->engine_->bodyOverlap(); }
+
+double Simulator::maxSpeed() const {
+  const SandConstants sand = sandConstants(grid(), parameters().gravity, parameters().material);
+  const Fields f = fields();
+  double fastest = 0.0;
+  for (std::size_t k = 0; k < f.depth.size(); ++k) {
+    const double inverse = inverseDepth(f.depth[k], sand);
+    fastest = std::max(fastest, inverse * std::hypot(f.momentum_x[k], f.momentum_y[k]));
+  }
+  return fastest;
+}
+
+std::size_t Simulator::activeCells() const {
+  const Fields f = fields();
+  std::size_t active = 0;
+  for (std::size_t k = 0; k < f.depth.size(); ++k) {
+    active += f.momentum_x[k] != 0.0f || f.momentum_y[k] != 0.0f ? 1 : 0;
+  }
+  return active;
+}
+
+}  // namespace shallow_sand
