@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstring>
 #include <random>
 #include <vector>
 
@@ -35,6 +36,10 @@ inline std::vector<float> randomWaves(std::mt19937& random, const Grid& grid) {
   return values;
 }
 
+inline bool sameBits(const std::vector<float>& a, const std::vector<float>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+}
+
 /// Parameters and fields of a valid simulation: uneven bed with rocks that stand out, dry ground, steep sand.
 struct RandomSand {
   SimulatorParameters parameters;
@@ -61,6 +66,37 @@ inline RandomSand randomSand(std::mt19937& random, int columns, int rows) {
   const float depth_scale = static_cast<float>(uniform(random, 2.0, 20.0) * spacing);
   for (float& b : sand.bed) b *= bed_scale;
   for (float& h : sand.depth) h = std::max(0.0f, h * depth_scale);
+  return sand;
+}
+
+/// A random surface that friction holds: from a cell to the next it rises by at most 0.67 μ ΔL along each axis, so its
+/// slope is at most 0.95 μ; above an uneven bed that stands out of it here and there, the less the more cells
+/// the surface is lifted; in tilted gravity.
+inline RandomSand heldSand(std::mt19937& random, int columns, int rows, double lifted_cells = 0.0) {
+  RandomSand sand = randomSand(random, columns, rows);
+  const Grid grid = sand.parameters.grid.grid();
+  const double friction = std::tan(sand.parameters.material.friction_angle);
+  sand.parameters.gravity = {uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0), -9.81};
+  std::vector<float> surface = randomWaves(random, grid);
+  double steepest = 1e-6;
+  for (int j = 0; j < grid.rows; ++j) {
+    for (int i = 0; i < grid.columns; ++i) {
+      const double own = surface[grid.index(i, j)];
+      if (i > 0) steepest = std::max(steepest, std::abs(own - surface[grid.index(i - 1, j)]));
+      if (j > 0) steepest = std::max(steepest, std::abs(own - surface[grid.index(i, j - 1)]));
+    }
+  }
+  const double scale = 0.67 * friction * grid.spacing / steepest;
+  const double lift = lifted_cells * grid.spacing;
+  const Eigen::Vector3d& g = sand.parameters.gravity;
+  for (int j = 0; j < grid.rows; ++j) {
+    for (int i = 0; i < grid.columns; ++i) {
+      const std::size_t k = grid.index(i, j);
+      const double level = -(g.x() * i + g.y() * j) * grid.spacing / g.z();
+      sand.bed[k] = 2.0f * sand.bed[k] + static_cast<float>(level);
+      sand.depth[k] = std::max(0.0f, static_cast<float>(scale * surface[k] + level + lift) - sand.bed[k]);
+    }
+  }
   return sand;
 }
 

@@ -157,15 +157,11 @@ class Simulator::Implementation {
       throw InvalidParameter("duration", std::to_string(duration), "seconds, finite and not negative");
     }
     const double end = time_ + duration;
+    clearBodies();
     while (time_ < end) substep(end);
-    if (!bodies_.empty()) castRays();
   }
 
   void substep(double end) {
-    if (!bodies_.empty()) {
-      castRays();
-      engine_->displace();
-    }
     const double step = std::min(stepBound(), end - time_);
     const double next = step < end - time_ ? time_ + step : end;
     engine_->step(static_cast<float>(step));
@@ -177,6 +173,20 @@ class Simulator::Implementation {
     progress_.last_step = step;
     progress_.steps += 1;
     progress_.cell_updates += grid_.cells();
+    clearBodies();
+  }
+
+  /// Moves sand out of the bodies where they are now.
+  void clearBodies() {
+    if (bodies_.empty()) return;
+    castRays();
+    engine_->displace();
+  }
+
+  double bodyOverlap() {
+    if (bodies_.empty()) return 0.0;
+    castRays();
+    return engine_->bodyOverlap();
   }
 
   /// Eq. 14 and 34. [s]
@@ -284,7 +294,7 @@ double Simulator::time() const { return implementation_->time_; }
 Fields Simulator::fields() const { return implementation_->engine_->fields(); }
 Ledger Simulator::ledger() const { return implementation_->ledger(); }
 const Progress& Simulator::progress() const { return implementation_->progress_; }
-double Simulator::bodyOverlap() const { return implementation_->engine_->bodyOverlap(); }
+double Simulator::bodyOverlap() const { return implementation_->bodyOverlap(); }
 
 double Simulator::maxSpeed() const {
   const SandConstants sand = sandConstants(grid(), parameters().gravity, parameters().material);

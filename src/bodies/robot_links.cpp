@@ -1,0 +1,188 @@
+#include "shallow_sand/bodies/robot_links.h"
+
+#include <geometric_shapes/mesh_operations.h>
+#include <geometric_shapes/shapes.h>
+#include <resource_retriever/retriever.h>
+#include <tinyxml2.h>
+#include <urdf_model/link.h>
+#include <urdf_model/model.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <Eigen/Geometry>
+#include <exception>
+#include <map>
+#include <memory>
+#include <sstream>
+#include <utility>
+
+#include "shallow_sand/core/parameters.h"
+
+namespace shallow_sand {
+namespace {
+
+resource_retriever::MemoryResource retrieve(const std::string& uri) {
+  const std::string expected = "a readable file as package://PACKAGE/PATH or file:///PATH";
+  resource_retriever::MemoryResource file;
+  try {
+    file = resource_retriever::Retriever().get(uri);
+  } catch (const resource_retriever::Exception& error) {
+    throw InvalidParameter("mesh", "'" + uri + "' (" + error.what() + ")", expected);
+  }
+  if (file.size == 0) throw InvalidParameter("mesh", "'" + uri + "', an empty file", expected);
+  return file;
+}
+
+/// Length of a COLLADA file's unit [m]; 1 for other files. assimp puts unit and up axis into the root node's
+/// transform, which geometric_shapes drops, as rviz does; rviz then applies the unit itself.
+double unitOf(const resource_retriever::MemoryResource& file) {
+  tinyxml2::XMLDocument document;
+  document.Parse(reinterpret_cast<const char*>(file.data.get()), file.size);
+  const auto* unit = tinyxml2::XMLHandle(document)
+                         .FirstChildElement("COLLADA")
+                         .FirstChildElement("asset")
+                         .FirstChildElement("unit")
+                         .ToElement();
+  const double meter = unit == nullptr ? 1.0 : unit->DoubleAttribute("meter", 1.0);
+  return meter > 0.0 ? meter : 1.0;
+}
+
+/// A mirroring `scale` turns triangles inside out, so they are turned back.
+TriangleMesh copyOf(const shapes::Mesh& source, bool mirrored) {
+  TriangleMesh mesh;
+  mesh.vertices.reserve(source.vertex_count);
+  mesh.triangles.reserve(source.triangle_count);
+  for (unsigned int i = 0; i < source.vertex_count; ++i) {
+    mesh.vertices.emplace_back(Eigen::Map<const Eigen::Vector3d>(source.vertices + 3 * i));
+  }
+  for (unsigned int i = 0; i < source.triangle_count; ++i) {
+    std::array<int, 3> triangle{};
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      triangle[corner] = static_cast<int>(source.triangles[3 * i + corner]);
+    }
+    if (mirrored) std::swap(triangle[1], triangle[2]);
+    mesh.triangles.push_back(triangle);
+  }
+  return mesh;
+}
+
+Shape shapeOf(const urdf::Geometry& geometry) {
+  switch (geometry.type) {
+    case urdf::Geometry::BOX: {
+      const auto& box = static_cast<const urdf::Box&>(geometry);
+      return Box{{box.dim.x, box.dim.y, box.dim.z}};
+    }
+    case urdf::Geometry::CYLINDER: {
+      const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
+      return Cylinder{cylinder.radius, cylinder.length};
+    }
+    case urdf::Geometry::SPHERE:
+      return Sphere{static_cast<const urdf::Sphere&>(geometry).radius};
+    case urdf::Geometry::MESH: {
+      const auto& mesh = static_cast<const urdf::Mesh&>(geometry);
+      return readMesh(mesh.filename, {mesh.scale.x, mesh.scale.y, mesh.scale.z});
+    }
+  }
+  throw InvalidParameter("geometry", "an unknown kind", "box, cylinder, sphere or mesh");
+}
+
+Eigen::Isometry3d poseOf(const urdf::Pose& origin) {
+  Eigen::Quaterniond rotation;
+  origin.rotation.getQuaternion(rotation.x(), rotation.y(), rotation.z(), rotation.w());
+  return Eigen::Translation3d(origin.position.x, origin.position.y, origin.position.z) *
+         rotation.normalized();
+}
+
+urdf::ModelInterfaceSharedPtr parse(const std::string& urdf_xml) {
+  std::string reason = "its log says why";
+  try {
+    if (const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(urdf_xml)) return model;
+  } catch (const std::exception& error) {
+    reason = error.what();
+  }
+  throw InvalidParameter("robot_description",
+                         "a text of " + std::to_string(urdf_xml.size()) +
+                             " characters that urdfdom can't parse (" + reason + ")",
+                         "a URDF with one <robot>");
+}
+
+/// How many collision elements each link has in the text. urdfdom stops reading a link at the first that it
+/// does not know (a capsule, say), logs that and goes on as if there were no more.
+std::map<std::string, std::size_t> collisionsWritten(const std::string& urdf_xml) {
+  tinyxml2::XMLDocument document;
+  document.Parse(urdf_xml.data(), urdf_xml.size());
+  std::map<std::string, std::size_t> written;
+  const auto* robot = tinyxml2::XMLHandle(document).FirstChildElement("robot").ToElement();
+  if (robot == nullptr) return written;
+  for (const auto* link = robot->FirstChildElement("link"); link; link = link->NextSiblingElement("link")) {
+    const char* name = link->Attribute("name");
+    if (name == nullptr) continue;
+    for (const auto* element = link->FirstChildElement("collision"); element;
+         element = element->NextSiblingElement("collision")) {
+      ++written[name];
+    }
+  }
+  return written;
+}
+
+std::string cutShort(const std::string& robot, const std::string& link, std::size_t first_unread) {
+  return "robot '" + robot + "', link '" + link + "', collision elements from " +
+         std::to_string(first_unread) +
+         " on left out: urdfdom can't parse that one, its log says why; expected box, cylinder, sphere or "
+         "mesh";
+}
+
+LinkGeometry geometryOf(const urdf::Link& link, const std::string& robot,
+                        std::vector<std::string>& problems) {
+  LinkGeometry geometry{link.name, {}};
+  int number = 0;
+  for (const urdf::CollisionSharedPtr& collision : link.collision_array) {
+    ++number;
+    try {
+      if (!collision->geometry) throw InvalidParameter("geometry", "none", "box, cylinder, sphere or mesh");
+      geometry.mesh.append(triangulate(shapeOf(*collision->geometry)), poseOf(collision->origin));
+    } catch (const InvalidParameter& error) {
+      problems.push_back("robot '" + robot + "', link '" + link.name + "', collision element " +
+                         std::to_string(number) + " left out: " + error.what());
+    }
+  }
+  return geometry;
+}
+
+}  // namespace
+
+RobotGeometry collisionGeometry(const std::string& urdf_xml) {
+  const urdf::ModelInterfaceSharedPtr model = parse(urdf_xml);
+  RobotGeometry robot;
+  robot.robot = model->getName();
+  const std::map<std::string, std::size_t> written = collisionsWritten(urdf_xml);
+  for (const auto& [name, link] : model->links_) {
+    const auto count = written.find(name);
+    const std::size_t known = link->collision_array.size();
+    if (count != written.end() && count->second > known) {
+      robot.problems.push_back(cutShort(robot.robot, name, known + 1));
+    }
+    LinkGeometry geometry = geometryOf(*link, robot.robot, robot.problems);
+    if (!geometry.mesh.triangles.empty()) robot.links.push_back(std::move(geometry));
+  }
+  return robot;
+}
+
+TriangleMesh readMesh(const std::string& uri, const Eigen::Vector3d& scale) {
+  if (!scale.allFinite() || scale.prod() == 0.0) {
+    std::ostringstream found;
+    found << "'" << uri << "' with scale " << scale.transpose();
+    throw InvalidParameter("mesh", found.str(), "three finite factors, none zero");
+  }
+  const resource_retriever::MemoryResource file = retrieve(uri);
+  // Vertices that coincide are merged, and nothing is centred. The transforms of all nodes but the root are
+  // applied.
+  const std::unique_ptr<shapes::Mesh> mesh(shapes::createMeshFromBinary(
+      reinterpret_cast<const char*>(file.data.get()), file.size, unitOf(file) * scale, uri));
+  if (!mesh || mesh->triangle_count == 0) {
+    throw InvalidParameter("mesh", "'" + uri + "', in which assimp finds no triangles",
+                           "a mesh file that assimp reads: STL, COLLADA, OBJ");
+  }
+  return copyOf(*mesh, scale.prod() < 0.0);
+}
+
+}  // namespace shallow_sand

@@ -1,0 +1,22 @@
+#include <ros/ros.h>
+
+#include "shallow_sand/device/passive_threads.h"
+#include "shallow_sand/ros/sand_node.h"
+
+int main(int argument_count, char** arguments) {
+  shallow_sand::waitPassively(arguments);
+  ros::init(argument_count, arguments, "sand_node");
+  try {
+    shallow_sand::SandNode().run();
+  } catch (const shallow_sand::SceneError& error) {
+    ROS_FATAL_STREAM(error.what());
+    return 2;
+  } catch (const shallow_sand::InvalidParameter& error) {
+    ROS_FATAL_STREAM(error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    ROS_FATAL_STREAM("sand_node: " << error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,129 @@
+#include "shallow_sand/ros/sand_node.h"
+
+#include <algorithm>
+
+#include "shallow_sand/Status.h"
+#include "shallow_sand/ros/conversions.h"
+#include "shallow_sand/scene/picture.h"
+#include "shallow_sand/scene/report.h"
+#include "shallow_sand/scene/simulation.h"
+
+namespace shallow_sand {
+
+namespace {
+
+/// Sand time that one frame may catch up [s]; what lies further back is given up, so that a slow machine stays
+/// responsive and a paused one does not race afterwards.
+constexpr double kLongestFrame = 0.1;
+
+}  // namespace
+
+SandNode::SandNode()
+    : parameters_(readNodeParameters(private_node_)), simulator_(buildSimulator(parameters_.scene)) {
+  points_ = private_node_.advertise<sensor_msgs::PointCloud2>("points", 1, true);
+  mesh_ = private_node_.advertise<visualization_msgs::Marker>("mesh", 1, true);
+  status_ = private_node_.advertise<Status>("status", 1, true);
+  ROS_INFO_STREAM(simulator_.backendNotice());
+  ROS_INFO_STREAM(simulator_.grid().columns << " x " << simulator_.grid().rows << " cells of "
+                                            << simulator_.grid().spacing << " m in frame "
+                                            << parameters_.scene.parameters.grid.frame);
+}
+
+void SandNode::run() {
+  ros::WallRate rate(parameters_.frame_rate);
+  const ros::Duration surface_period(1.0 / parameters_.publish_rate);
+  while (ros::ok()) {
+    ros::spinOnce();
+    const ros::Time now = ros::Time::now();
+    if (now < last_frame_) {
+      ROS_WARN_STREAM("time went back by " << (last_frame_ - now).toSec() << " s; the sand goes on from here");
+      last_frame_ = last_surface_ = last_status_ = last_search_ = ros::Time();
+      buffer_.clear();
+    }
+    if (!now.isZero()) {
+      if (!robot_) findRobot(now);
+      advance(now);
+      if (last_surface_.isZero() || now - last_surface_ >= surface_period) publishSurface(now);
+      if (last_status_.isZero() || now - last_status_ >= ros::Duration(1.0)) publishStatus(now);
+    }
+    rate.sleep();
+  }
+  writeResults();
+}
+
+void SandNode::findRobot(const ros::Time& now) {
+  if (!last_search_.isZero() && now - last_search_ < ros::Duration(1.0)) return;
+  last_search_ = now;
+  std::string urdf;
+  const std::string name = node_.resolveName(parameters_.robot_description);
+  std::string problem = "parameter " + name + " is not set; expected the URDF of a robot, as robot_state_publisher has it";
+  if (node_.getParam(name, urdf)) {
+    try {
+      robot_.emplace(urdf, parameters_, simulator_);
+      return;
+    } catch (const InvalidParameter& error) {
+      problem = "parameter " + name + ": " + error.what();
+    }
+  }
+  if (!described_problem_) ROS_ERROR_STREAM(problem << "; no robot digs until it is there");
+  described_problem_ = true;
+}
+
+void SandNode::advance(const ros::Time& now) {
+  const double elapsed = last_frame_.isZero() ? 0.0 : (now - last_frame_).toSec();
+  last_frame_ = now;
+  if (!(elapsed > 0.0)) return;
+  const double frame = std::min(elapsed, kLongestFrame);
+  if (robot_) robot_->update(buffer_, now, simulator_.time() + frame, simulator_);
+  const ros::WallTime begin = ros::WallTime::now();
+  simulator_.advance(frame);
+  busy_ += (ros::WallTime::now() - begin).toSec();
+}
+
+void SandNode::publishSurface(const ros::Time& now) {
+  const std::string& frame = parameters_.scene.parameters.grid.frame;
+  const Fields fields = simulator_.fields();
+  points_.publish(toPointCloud(simulator_.grid(), fields, frame, now));
+  // A mesh takes forty bytes a corner: made only when somebody looks, or once, so that whoever comes later sees sand.
+  if (mesh_.getNumSubscribers() > 0 || last_surface_.isZero()) {
+    mesh_.publish(toMarker(simulator_.grid(), fields, frame, now));
+  }
+  last_surface_ = now;
+}
+
+void SandNode::publishStatus(const ros::Time& now) {
+  const Ledger ledger = simulator_.ledger();
+  const ros::WallTime wall = ros::WallTime::now();
+  const double wall_elapsed = (wall - last_status_wall_).toSec();
+  Status status;
+  status.header.stamp = now;
+  status.header.frame_id = parameters_.scene.parameters.grid.frame;
+  status.backend = toString(simulator_.backend());
+  status.simulated_time = simulator_.time();
+  status.real_time_factor =
+      last_status_.isZero() ? 0.0 : (simulator_.time() - last_status_simulated_) / wall_elapsed;
+  status.steps = simulator_.progress().steps;
+  status.cells = static_cast<std::uint32_t>(simulator_.grid().cells());
+  status.active_cells = static_cast<std::uint32_t>(simulator_.activeCells());
+  status.max_speed = simulator_.maxSpeed();
+  status.volume_start = ledger.start;
+  status.volume_poured = ledger.poured;
+  status.volume_left = ledger.left;
+  status.volume = ledger.now;
+  status.volume_error = ledger.error();
+  status.body_overlap = simulator_.bodyOverlap();
+  if (robot_) status.bodies = robot_->status();
+  status_.publish(status);
+  last_status_ = now;
+  last_status_wall_ = wall;
+  last_status_simulated_ = simulator_.time();
+}
+
+void SandNode::writeResults() const {
+  if (!parameters_.report.empty()) {
+    writeReport(parameters_.report, makeReport(simulator_, parameters_.scene.name, busy_));
+  }
+  if (!parameters_.picture.empty()) writePicture(parameters_.picture, simulator_.grid(), simulator_.fields());
+}
+
+}  // namespace shallow_sand

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cpl_error.h>
+#include <gdal_priv.h>
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "shallow_sand/core/grid.h"
+
+namespace shallow_sand {
+
+/// GDAL prints its errors by itself; as long as this lives, on this thread, it only remembers them.
+class QuietGdal {
+ public:
+  QuietGdal() {
+    GDALAllRegister();
+    CPLPushErrorHandler(CPLQuietErrorHandler);
+    CPLErrorReset();
+  }
+  ~QuietGdal() { CPLPopErrorHandler(); }
+  QuietGdal(const QuietGdal&) = delete;
+  QuietGdal& operator=(const QuietGdal&) = delete;
+};
+
+/// For what GDAL reports by its return value. @throws std::runtime_error "PATH: MESSAGE"
+inline void requireGdal(bool succeeded, const std::string& path) {
+  if (!succeeded) {
+    const std::string message = CPLGetLastErrorMsg();
+    throw std::runtime_error(path + ": " + (message.empty() ? "GDAL could not write it" : message));
+  }
+}
+
+struct CloseDataset {
+  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
+};
+using DatasetPointer = std::unique_ptr<GDALDataset, CloseDataset>;
+
+/// @throws std::runtime_error naming `path`
+inline GDALDriver& gdalDriver(const char* name, const std::string& path) {
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(name);
+  if (driver == nullptr) {
+    throw std::runtime_error(path + ": this GDAL has no driver " + name);
+  }
+  return *driver;
+}
+
+/// Writes a field of the grid to a whole band. Memory holds the southernmost row first and images the
+/// northernmost, so it is read from its last row on, backwards. @throws std::runtime_error naming `path`
+inline void writeNorthUp(GDALRasterBand& band, const std::vector<float>& values, const Grid& grid,
+                         const std::string& path) {
+  const auto line = static_cast<GSpacing>(sizeof(float)) * grid.columns;
+  // RasterIO takes a mutable buffer for both directions; writing only reads it.
+  float* north = const_cast<float*>(values.data()) + grid.index(0, grid.rows - 1);
+  requireGdal(band.RasterIO(GF_Write, 0, 0, grid.columns, grid.rows, north, grid.columns, grid.rows,
+                            GDT_Float32, sizeof(float), -line, nullptr) == CE_None,
+              path);
+}
+
+}  // namespace shallow_sand

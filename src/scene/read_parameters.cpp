@@ -1,0 +1,97 @@
+#include "bounds.h"
+#include "scene_reader.h"
+
+namespace shallow_sand {
+namespace {
+
+GridParameters readGrid(const SceneValue& grid) {
+  grid.requireMap({"size", "spacing", "origin", "frame"});
+  GridParameters parameters;
+  grid.read("size", bounds::positive, parameters.size);
+  grid.read("spacing", bounds::positive, parameters.spacing);
+  grid.read("origin", bounds::finite, parameters.origin);
+  grid.read("frame", parameters.frame);
+  return parameters;
+}
+
+Material readMaterial(const SceneValue& material) {
+  material.requireMap({"friction_angle", "dilute_layer"});
+  Material parameters;
+  if (const auto angle = material.find("friction_angle")) {
+    parameters.friction_angle = radians(angle->number(bounds::finite));
+  }
+  if (const auto layer = material.find("dilute_layer")) {
+    layer->requireMap({"fraction", "depth"});
+    layer->read("fraction", bounds::finite, parameters.layer_fraction);
+    layer->read("depth", bounds::finite_or_infinite, parameters.layer_depth);
+  }
+  return parameters;
+}
+
+void readEdge(const SceneValue& edges, const std::string& side, Edge& edge) {
+  if (const auto value = edges.find(side)) {
+    const std::string kind = value->text();
+    if (kind != "wall" && kind != "open") {
+      value->fail("wall or open");
+    }
+    edge = kind == "open" ? Edge::open : Edge::wall;
+  }
+}
+
+Edges readEdges(const SceneValue& value) {
+  value.requireMap({"x_min", "x_max", "y_min", "y_max"});
+  Edges edges;
+  readEdge(value, "x_min", edges.x_min);
+  readEdge(value, "x_max", edges.x_max);
+  readEdge(value, "y_min", edges.y_min);
+  readEdge(value, "y_max", edges.y_max);
+  return edges;
+}
+
+SolverParameters readSolver(const SceneValue& solver) {
+  solver.requireMap({"reconstruction", "courant", "max_step", "fixed_step"});
+  if (const auto reconstruction = solver.find("reconstruction")) {
+    if (reconstruction->text() != "constant") {
+      const bool planned = reconstruction->text() == "minmod";
+      reconstruction->fail(planned ? "constant (minmod is not available yet)" : "constant");
+    }
+  }
+  SolverParameters parameters;
+  solver.read("courant", bounds::finite, parameters.courant);
+  solver.read("max_step", bounds::finite, parameters.max_step);
+  if (const auto step = solver.find("fixed_step")) {
+    parameters.fixed_step = step->number(bounds::finite);
+  }
+  return parameters;
+}
+
+}  // namespace
+
+SimulatorParameters readParameters(const SceneValue& root) {
+  SimulatorParameters parameters;
+  if (const auto grid = root.find("grid")) {
+    parameters.grid = readGrid(*grid);
+  }
+  if (const auto gravity = root.find("gravity")) {
+    parameters.gravity = gravity->vector<3>(bounds::finite);
+  }
+  if (const auto material = root.find("material")) {
+    parameters.material = readMaterial(*material);
+  }
+  if (const auto edges = root.find("edges")) {
+    parameters.edges = readEdges(*edges);
+  }
+  if (const auto solver = root.find("solver")) {
+    parameters.solver = readSolver(*solver);
+  }
+  if (const auto backend = root.find("backend")) {
+    root.check([&] { parameters.backend = backendFromString(backend->text()); });
+  }
+  if (const auto threads = root.find("threads")) {
+    parameters.threads = static_cast<int>(threads->number(bounds::thread_count));
+  }
+  root.check([&] { parameters.validate(); });
+  return parameters;
+}
+
+}  // namespace shallow_sand

@@ -1,0 +1,194 @@
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+#include "shallow_sand/bodies/shape.h"
+#include "shallow_sand/device/passive_threads.h"
+#include "shallow_sand/scene/geotiff.h"
+#include "shallow_sand/scene/picture.h"
+#include "shallow_sand/scene/report.h"
+#include "shallow_sand/scene/scene.h"
+#include "shallow_sand/scene/simulation.h"
+
+using namespace shallow_sand;
+
+namespace {
+
+enum ExitCode { kSuccess = 0, kFailure = 1, kBadInput = 2 };
+
+struct Options {
+  std::string scene;
+  std::optional<double> duration;  ///< [s]
+  std::optional<std::string> backend;
+  std::optional<int> threads;
+  std::string save;  ///< paths; empty: not asked for
+  std::string report;
+  std::string picture;
+};
+
+void declareOptions(CLI::App& app, Options& options) {
+  app.add_option("SCENE", options.scene, "Scene file (YAML)")->required();
+  app.add_option("--duration", options.duration, "Time to simulate [s], instead of the scene's");
+  app.add_option("--backend", options.backend, "auto, cpu or cuda, instead of the scene's");
+  app.add_option("--threads", options.threads, "Threads of the cpu backend; 0: as many as there are");
+  app.add_option("--save", options.save, "Write the state at the end to this GeoTIFF");
+  app.add_option("--report", options.report, "Write the figures of the run to this JSON file");
+  app.add_option("--picture", options.picture, "Write a shaded relief of the end to this PNG");
+  app.set_version_flag("--version", SHALLOW_SAND_VERSION);
+}
+
+/// Options go before what the scene says.
+void applyOptions(const Options& options, Scene& scene) {
+  scene.duration = options.duration.value_or(scene.duration);
+  if (!(scene.duration >= 0.0 && scene.duration <= 1e9)) {
+    throw InvalidParameter("--duration", std::to_string(scene.duration), "a number of seconds from 0 to 1e9");
+  }
+  if (options.backend) {
+    scene.parameters.backend = backendFromString(*options.backend);
+  }
+  scene.parameters.threads = options.threads.value_or(scene.parameters.threads);
+  if (scene.parameters.threads < 0) {
+    throw InvalidParameter("--threads", std::to_string(scene.parameters.threads), "a number of at least 0");
+  }
+}
+
+/// Finds out before a long run, not after it, that a result has nowhere to go.
+void requireWritable(const std::string& option, const std::string& path) {
+  if (path.empty()) {
+    return;
+  }
+  const bool existed = std::filesystem::exists(path);
+  const bool writable = static_cast<bool>(std::ofstream(path, std::ios::app));
+  if (writable && !existed) {
+    std::filesystem::remove(path);
+  }
+  if (!writable) {
+    throw InvalidParameter(option, path, "a file that can be written, in a folder that exists");
+  }
+}
+
+/// How far to run between two looks at the clock: with a fixed step a whole number of steps, so none is cut
+/// short. [s]
+double frameLength(const SolverParameters& solver) {
+  constexpr double kFrame = 0.05;
+  const double step = solver.fixed_step.value_or(kFrame);
+  return std::max(1.0, std::round(kFrame / step)) * step;
+}
+
+void printProgress(const Simulator& simulator, double duration, double wall) {
+  std::fprintf(stderr, "%8.2f s of %g s (%3.0f %%), %llu steps, %.2f times real time\n", simulator.time(),
+               duration, 100.0 * simulator.time() / duration,
+               static_cast<unsigned long long>(simulator.progress().steps), simulator.time() / wall);
+}
+
+/// Returns the time that the run took on the clock. [s]
+double run(Simulator& simulator, double duration) {
+  using Clock = std::chrono::steady_clock;
+  const auto secondsSince = [](Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+  };
+  const Clock::time_point begin = Clock::now();
+  const double frame = frameLength(simulator.parameters().solver);
+  double next_print = 1.0;
+  while (simulator.time() < duration) {
+    const double rest = duration - simulator.time();
+    // No sliver of a frame at the end.
+    const bool last = rest < 1.001 * frame;
+    simulator.advance(last ? rest : frame);
+    if (secondsSince(begin) >= next_print) {
+      printProgress(simulator, duration, secondsSince(begin));
+      next_print = secondsSince(begin) + 1.0;
+    }
+    if (last) {
+      break;
+    }
+  }
+  return secondsSince(begin);
+}
+
+void printSummary(const Report& report) {
+  std::printf("%s: %g s of sand in %.2f s on %s (%d threads), %llu steps, %.3g million cells a second\n",
+              report.scene.c_str(), report.simulated, report.wall, report.backend.c_str(), report.threads,
+              static_cast<unsigned long long>(report.steps),
+              report.wall > 0.0 ? 1e-6 * static_cast<double>(report.cell_updates) / report.wall : 0.0);
+  std::printf("volume: %.6g m3 at the start, %.6g poured, %.6g left, %.6g at the end; error %.2g\n",
+              report.volume.start, report.volume.poured, report.volume.left, report.volume.now,
+              report.volume.error());
+  std::printf("at the end: %zu of %zu cells active, fastest sand %.3g m/s, %.3g m3 inside bodies\n",
+              report.active_cells_end, report.cells, report.max_speed_end, report.body_overlap);
+}
+
+std::vector<Outline> footprints(const Scene& scene, double time) {
+  std::vector<Outline> outlines;
+  for (const SceneBody& body : scene.bodies) {
+    outlines.push_back(footprint(triangulate(body.shape), poseAt(body, time)));
+  }
+  return outlines;
+}
+
+void writeResults(const Options& options, const Scene& scene, const Simulator& simulator,
+                  const Report& report) {
+  if (!options.save.empty()) {
+    saveState(options.save, simulator.grid(), simulator.fields(), stateMetadata(simulator));
+  }
+  if (!options.report.empty()) {
+    writeReport(options.report, report);
+  }
+  if (!options.picture.empty()) {
+    writePicture(options.picture, simulator.grid(), simulator.fields(), footprints(scene, simulator.time()));
+  }
+  for (const std::string& path : {options.save, options.report, options.picture}) {
+    if (!path.empty()) {
+      std::printf("wrote %s\n", path.c_str());
+    }
+  }
+}
+
+void runScene(const Options& options) {
+  Scene scene = loadScene(options.scene);
+  applyOptions(options, scene);
+  requireWritable("--save", options.save);
+  requireWritable("--report", options.report);
+  requireWritable("--picture", options.picture);
+  Simulator simulator = buildSimulator(scene);
+  std::printf("%s\n", simulator.backendNotice().c_str());
+  const double wall = run(simulator, scene.duration);
+  const Report report = makeReport(simulator, scene.name, wall);
+  printSummary(report);
+  writeResults(options, scene, simulator, report);
+}
+
+int failed(const std::string& message, ExitCode code) {
+  std::fprintf(stderr, "%s\n", message.c_str());
+  return code;
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  waitPassively(arguments);
+  Options options;
+  CLI::App app("Runs a scene of dry sand and the bodies that move in it.", "sand_run");
+  declareOptions(app, options);
+  try {
+    app.parse(argument_count, arguments);
+  } catch (const CLI::ParseError& error) {
+    const bool asked_for = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);
+    return asked_for ? app.exit(error)
+                     : failed(std::string("sand_run: ") + error.what() + "; see sand_run --help", kBadInput);
+  }
+  try {
+    runScene(options);
+  } catch (const SceneError& error) {
+    return failed(error.what(), kBadInput);
+  } catch (const InvalidParameter& error) {
+    return failed(options.scene + ": " + error.what(), kBadInput);
+  } catch (const std::exception& error) {
+    return failed(std::string("sand_run: ") + error.what(), kFailure);
+  }
+  return kSuccess;
+}

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "scene_value.h"
+#include "shallow_sand/scene/scene.h"
+
+namespace shallow_sand {
+
+/// The parts of readScene, each from the whole scene's map; all throw SceneError.
+SimulatorParameters readParameters(const SceneValue& root);
+std::vector<Pour> readPours(const SceneValue& root);
+std::vector<SceneBody> readBodies(const SceneValue& root);
+/// Elevation of the bed at every cell. [m]
+std::vector<float> readBed(const SceneValue& root, const Grid& grid);
+/// Depth of the sand at every cell. [m]
+std::vector<float> readSand(const SceneValue& root, const Grid& grid, const std::vector<float>& bed);
+
+}  // namespace shallow_sand

@@ -1,0 +1,202 @@
+#include "scene_value.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "shallow_sand/scene/scene.h"
+
+namespace shallow_sand {
+namespace {
+
+/// Errors are one line, whatever the file holds.
+std::string oneLine(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+  return text;
+}
+
+std::string shortened(const std::string& text) {
+  constexpr std::size_t kLongest = 60;
+  return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
+}
+
+std::string describe(const YAML::Node& node) {
+  switch (node.Type()) {
+    case YAML::NodeType::Scalar:
+      return node.Scalar().empty() ? "an empty text" : shortened(node.Scalar());
+    case YAML::NodeType::Sequence:
+      return "a list of " + std::to_string(node.size());
+    case YAML::NodeType::Map:
+      return "a map";
+    default:
+      return "nothing";
+  }
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  return std::accumulate(std::next(words.begin()), words.end(), words.front(),
+                         [](const std::string& list, const std::string& word) { return list + ", " + word; });
+}
+
+/// Levenshtein distance: how many letters to insert, drop or change.
+std::size_t editDistance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0u);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+/// The known key that was probably meant; empty when none is near.
+std::string nearest(const std::string& key, const std::vector<std::string>& known) {
+  const auto best = std::min_element(known.begin(), known.end(), [&key](const auto& a, const auto& b) {
+    return editDistance(key, a) < editDistance(key, b);
+  });
+  return editDistance(key, *best) <= std::max<std::size_t>(2, best->size() / 3) ? *best : std::string();
+}
+
+/// Where the value at a path such as "grid.size[0]" stands, or as much of the path as is there.
+YAML::Mark markBelow(const YAML::Node& node, const std::string& path) {
+  const std::size_t begin = path.find_first_not_of(".[]");
+  if (begin == std::string::npos || !(node.IsMap() || node.IsSequence())) {
+    return node.Mark();
+  }
+  const std::size_t end = std::min(path.find_first_of(".[]", begin), path.size());
+  const std::string key = path.substr(begin, end - begin);
+  const YAML::Node child = node.IsSequence() ? node[std::stoul(key)] : node[key];
+  return child.IsDefined() ? markBelow(child, path.substr(end)) : node.Mark();
+}
+
+}  // namespace
+
+SceneValue::SceneValue(const YAML::Node& node, const std::string& source_name)
+    : SceneValue(node, "", std::make_shared<const std::string>(source_name)) {}
+
+SceneValue::SceneValue(const YAML::Node& node, const std::string& path,
+                       std::shared_ptr<const std::string> source_name)
+    : node_(node), path_(path), source_name_(std::move(source_name)) {}
+
+void SceneValue::requireMap(const std::vector<std::string>& known) const {
+  if (!node_.IsMap()) {
+    fail("a map with keys from: " + listed(known));
+  }
+  std::set<std::string> seen;
+  for (const auto& entry : node_) {
+    if (!entry.first.IsScalar() ||
+        std::find(known.begin(), known.end(), entry.first.Scalar()) == known.end()) {
+      failUnknown(entry.first, known);
+    }
+    if (!seen.insert(entry.first.Scalar()).second) {
+      SceneValue(entry.first, pathOf(entry.first.Scalar()), source_name_)
+          .fail("given twice", "this key once");
+    }
+  }
+}
+
+std::string SceneValue::requireOneOf(const std::vector<std::string>& known) const {
+  requireMap(known);
+  if (node_.size() != 1) {
+    fail("a map of " + std::to_string(node_.size()) + " keys", "exactly one of: " + listed(known));
+  }
+  return node_.begin()->first.Scalar();
+}
+
+std::optional<SceneValue> SceneValue::find(const std::string& key) const {
+  if (!node_.IsMap() || !node_[key].IsDefined()) {
+    return std::nullopt;
+  }
+  return SceneValue(node_[key], pathOf(key), source_name_);
+}
+
+SceneValue SceneValue::at(const std::string& key) const {
+  if (const auto value = find(key)) {
+    return *value;
+  }
+  SceneValue(node_, pathOf(key), source_name_).fail("missing", "this key");
+}
+
+std::vector<SceneValue> SceneValue::items() const {
+  if (!node_.IsSequence()) {
+    fail("a list");
+  }
+  std::vector<SceneValue> result;
+  for (const YAML::Node& item : node_) {
+    result.push_back(SceneValue(item, path_ + "[" + std::to_string(result.size()) + "]", source_name_));
+  }
+  return result;
+}
+
+std::vector<SceneValue> SceneValue::items(std::size_t count, const std::string& expected) const {
+  if (!node_.IsSequence() || node_.size() != count) {
+    fail(expected);
+  }
+  return items();
+}
+
+std::string SceneValue::text() const {
+  if (!node_.IsScalar() || node_.Scalar().empty()) {
+    fail("a text");
+  }
+  return node_.Scalar();
+}
+
+double SceneValue::number(const Bound& bound) const {
+  // yaml-cpp marks quoted text with the tag "!".
+  double value = 0.0;
+  if (!node_.IsScalar() || node_.Tag() == "!" || !YAML::convert<double>::decode(node_, value) ||
+      !bound.holds(value)) {
+    fail(bound.expected);
+  }
+  return value;
+}
+
+void SceneValue::read(const std::string& key, const Bound& bound, double& target) const {
+  if (const auto value = find(key)) {
+    target = value->number(bound);
+  }
+}
+
+void SceneValue::read(const std::string& key, std::string& target) const {
+  if (const auto value = find(key)) {
+    target = value->text();
+  }
+}
+
+void SceneValue::fail(const std::string& expected) const { fail(describe(node_), expected); }
+
+void SceneValue::fail(const std::string& found, const std::string& expected) const {
+  const std::string prefix = path_.empty() ? "" : path_ + ": ";
+  raise(node_.Mark(), prefix + found + "; expected " + expected);
+}
+
+void SceneValue::failBelow(const std::string& message) const {
+  raise(markBelow(node_, message.substr(0, message.find(": "))), pathOf(message));
+}
+
+void SceneValue::raise(const YAML::Mark& mark, const std::string& message) const {
+  const std::string line = mark.is_null() ? "" : ":" + std::to_string(mark.line + 1);
+  throw SceneError(oneLine(*source_name_ + line + ": " + message));
+}
+
+std::string SceneValue::pathOf(const std::string& key) const {
+  return path_.empty() ? key : path_ + "." + key;
+}
+
+void SceneValue::failUnknown(const YAML::Node& key, const std::vector<std::string>& known) const {
+  const std::string name = describe(key);
+  const std::string meant = nearest(name, known);
+  SceneValue(key, pathOf(name), source_name_)
+      .fail("unknown key" + (meant.empty() ? "" : " (did you mean " + meant + "?)"),
+            "one of: " + listed(known));
+}
+
+}  // namespace shallow_sand
