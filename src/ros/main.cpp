@@ -6,6 +6,8 @@
 int main(int argument_count, char** arguments) {
   shallow_sand::waitPassively(arguments);
   ros::init(argument_count, arguments, "sand_node");
+  // ROS shuts its log down with the last handle; this one outlives the node, so that its end can be told.
+  const ros::NodeHandle handle;
   try {
     shallow_sand::SandNode().run();
   } catch (const shallow_sand::SceneError& error) {

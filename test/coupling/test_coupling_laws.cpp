@@ -1,0 +1,199 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "random_bodies.h"
+#include "random_fields.h"
+#include "random_seed.h"
+
+namespace shallow_sand {
+namespace {
+
+constexpr int kScenes = 20;
+
+/// Large enough for the bodies, and no multiple of anything.
+int randomCount(std::mt19937& random) { return 30 + static_cast<int>(random() % 20); }
+
+/// Sand that rests, and covers most of its bed.
+RandomSand restingSand(std::mt19937& random) {
+  const int columns = randomCount(random);
+  return heldSand(random, columns, randomCount(random), uniform(random, 2.0, 12.0));
+}
+
+/// Uneven sand of which much moves at once.
+RandomSand movingSand(std::mt19937& random) {
+  const int columns = randomCount(random);
+  RandomSand sand = randomSand(random, columns, randomCount(random));
+  sand.parameters.gravity = {uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0), -9.81};
+  return sand;
+}
+
+double highestSurface(const RandomSand& sand) {
+  double highest = -std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < sand.bed.size(); ++k) {
+    highest = std::max(highest, static_cast<double>(sand.bed[k]) + static_cast<double>(sand.depth[k]));
+  }
+  return highest;
+}
+
+/// Flies at random over the sand, its lowest point `gap` [m] over the highest surface.
+void hover(std::mt19937& random, const RandomSand& sand, double gap, double stop, RandomBody& body) {
+  const double height = highestSurface(sand) + gap + body.radius;
+  for (int key = 0; key < 4; ++key) {
+    body.motion.push_back({stop * key / 3.0, poseOf(randomPlace(random, sand.parameters.grid.grid(), 0.0),
+                                                    height, randomRotation(random))});
+  }
+}
+
+/// A place in the sand, held for ever.
+void rest(std::mt19937& random, const RandomSand& sand, RandomBody& body) {
+  const Eigen::Vector2d place = randomPlace(random, sand.parameters.grid.grid(), body.radius);
+  const double height = surfaceNear(sand, place) + uniform(random, -1.0, 1.0) * body.radius;
+  body.motion = {{0.0, poseOf(place, height, randomRotation(random))}};
+}
+
+double speedScale(const RandomSand& sand) { return std::sqrt(9.81 * sand.parameters.grid.spacing); }
+
+/// Time in which a body of this speed crosses the grid. [s]
+double randomDuration(std::mt19937& random, const RandomSand& sand) {
+  return sand.parameters.grid.size.maxCoeff() / (uniform(random, 0.3, 5.0) * speedScale(sand));
+}
+
+void expectSameSand(const Fields& a, const Fields& b, int scene) {
+  EXPECT_TRUE(sameBits(a.depth, b.depth)) << "scene " << scene;
+  // A zero may have either sign.
+  EXPECT_EQ(a.momentum_x, b.momentum_x) << "scene " << scene;
+  EXPECT_EQ(a.momentum_y, b.momentum_y) << "scene " << scene;
+}
+
+TEST(CouplingLaws, HoveringBodyLeavesRestingSandAlone) {
+  std::mt19937 random = seededGenerator();
+  for (int scene = 0; scene < kScenes; ++scene) {
+    const RandomSand sand = restingSand(random);
+    Simulator simulator(sand.parameters, sand.bed, sand.depth);
+    for (int k = 0; k < 3; ++k) {
+      RandomBody body = randomBody(random, sand.parameters.grid.spacing);
+      hover(random, sand, uniform(random, 0.001, 1.5) * sand.parameters.grid.spacing, 0.5, body);
+      addTo(simulator, body);
+    }
+    simulator.advance(0.6);
+    const Fields after = simulator.fields();
+    EXPECT_TRUE(sameBits(after.depth, sand.depth)) << "scene " << scene;
+    EXPECT_EQ(simulator.activeCells(), 0u) << "scene " << scene;
+    EXPECT_EQ(simulator.bodyOverlap(), 0.0);
+  }
+}
+
+TEST(CouplingLaws, HoveringBodyLeavesMovingSandAlone) {
+  std::mt19937 random = seededGenerator();
+  for (int scene = 0; scene < kScenes; ++scene) {
+    const RandomSand sand = movingSand(random);
+    Simulator alone(sand.parameters, sand.bed, sand.depth);
+    Simulator simulator(sand.parameters, sand.bed, sand.depth);
+    RandomBody body = randomBody(random, sand.parameters.grid.spacing);
+    // Waves may climb, but not by as much as this in the time given.
+    hover(random, sand, sand.parameters.grid.size.maxCoeff(), 0.2, body);
+    addTo(simulator, body);
+    alone.advance(0.2);
+    simulator.advance(0.2);
+    EXPECT_EQ(simulator.progress().steps, alone.progress().steps);
+    expectSameSand(simulator.fields(), alone.fields(), scene);
+  }
+}
+
+TEST(CouplingLaws, SandSettlesAroundARestingBodyAndStays) {
+  std::mt19937 random = seededGenerator();
+  for (int scene = 0; scene < kScenes; ++scene) {
+    const RandomSand sand = restingSand(random);
+    Simulator simulator(sand.parameters, sand.bed, sand.depth);
+    RandomBody body = randomBody(random, sand.parameters.grid.spacing);
+    rest(random, sand, body);
+    addTo(simulator, body);
+    const double latest = 30.0;
+    do {
+      simulator.advance(0.1);
+    } while (simulator.activeCells() > 0 && simulator.time() < latest);
+    EXPECT_EQ(simulator.activeCells(), 0u) << "scene " << scene << ": fastest " << simulator.maxSpeed()
+                                           << " m/s after " << simulator.time() << " s";
+    if (simulator.activeCells() > 0) continue;
+    const Fields settled = simulator.fields();
+    simulator.advance(1.0);
+    expectSameSand(simulator.fields(), settled, scene);
+  }
+}
+
+TEST(CouplingLaws, VolumeIsKeptAndDepthNeverNegative) {
+  std::mt19937 random = seededGenerator();
+  for (int scene = 0; scene < kScenes; ++scene) {
+    RandomSand sand = movingSand(random);
+    sand.parameters.edges = randomEdges(random);
+    sand.parameters.solver.courant = uniform(random, 0.1, 0.9);
+    Simulator simulator(sand.parameters, sand.bed, sand.depth);
+    const double duration = randomDuration(random, sand);
+    for (int k = 0; k < 3; ++k) {
+      RandomBody body = randomBody(random, sand.parameters.grid.spacing);
+      moveThroughSand(random, sand, duration, body);
+      addTo(simulator, body);
+    }
+    for (int frame = 0; frame < 10; ++frame) {
+      simulator.advance(0.1 * duration);
+      const Fields fields = simulator.fields();
+      for (std::size_t k = 0; k < fields.depth.size(); ++k) {
+        ASSERT_TRUE(std::isfinite(fields.depth[k]) && fields.depth[k] >= 0.0f)
+            << fields.depth[k] << " scene " << scene;
+        ASSERT_TRUE(std::isfinite(fields.momentum_x[k]) && std::isfinite(fields.momentum_y[k]))
+            << "scene " << scene;
+      }
+    }
+    EXPECT_LT(simulator.ledger().error(), 1e-6) << "scene " << scene;
+  }
+}
+
+TEST(CouplingLaws, NoSandIsInsideABodyThatStopped) {
+  std::mt19937 random = seededGenerator();
+  double largest = 0.0;
+  for (int scene = 0; scene < kScenes; ++scene) {
+    const RandomSand sand = restingSand(random);
+    Simulator simulator(sand.parameters, sand.bed, sand.depth);
+    RandomBody body = randomBody(random, sand.parameters.grid.spacing);
+    const double duration = randomDuration(random, sand);
+    moveThroughSand(random, sand, duration, body);
+    addTo(simulator, body);
+    simulator.advance(duration + 2.0);
+    const double cells = simulator.bodyOverlap() / std::pow(sand.parameters.grid.spacing, 3);
+    largest = std::max(largest, cells);
+    EXPECT_LT(cells, 1e-3) << "cubes of a cell, scene " << scene;
+  }
+  std::printf("largest overlap: %.2e cubes of a cell\n", largest);
+}
+
+TEST(CouplingLaws, ThreadsChangeNoBit) {
+  std::mt19937 random = seededGenerator();
+  for (int scene = 0; scene < kScenes; ++scene) {
+    RandomSand sand = movingSand(random);
+    sand.parameters.edges = randomEdges(random);
+    std::vector<RandomBody> bodies;
+    for (int k = 0; k < 2; ++k) {
+      bodies.push_back(randomBody(random, sand.parameters.grid.spacing));
+      moveThroughSand(random, sand, 0.4, bodies.back());
+    }
+    std::vector<Simulator> simulators;
+    for (const int threads : {1, 2, 3}) {
+      sand.parameters.threads = threads;
+      simulators.emplace_back(sand.parameters, sand.bed, sand.depth);
+      for (const RandomBody& body : bodies) addTo(simulators.back(), body);
+      simulators.back().advance(0.2);
+      const Fields one = simulators.front().fields();
+      const Fields many = simulators.back().fields();
+      EXPECT_TRUE(sameBits(one.depth, many.depth)) << threads << " threads, scene " << scene;
+      EXPECT_TRUE(sameBits(one.momentum_x, many.momentum_x)) << threads << " threads, scene " << scene;
+      EXPECT_TRUE(sameBits(one.momentum_y, many.momentum_y)) << threads << " threads, scene " << scene;
+      EXPECT_EQ(simulators.front().bodyOverlap(), simulators.back().bodyOverlap());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace shallow_sand

@@ -1,0 +1,102 @@
+#!/usr/bin/python3
+"""The demo digs: a trench where tf says the bucket's edge went, a spoil heap beside it, no sand lost."""
+import unittest
+
+import numpy
+import rospy
+import rostest
+import tf2_ros
+from sensor_msgs.msg import PointCloud2
+from shallow_sand.msg import BodyStatus, Status
+from std_msgs.msg import Bool, String
+
+GRID = "/sand_node/grid"
+CYCLE_LIMIT = 120.0  # s; the cycle takes 40
+
+
+def edge_path(buffer, phases, limit):
+    """Positions of the bucket's edge in the sand's frame while `phases` are played, until the player has finished."""
+    state = {"phase": "", "finished": False}
+    rospy.Subscriber("/joint_player/phase", String, lambda m: state.update(phase=m.data))
+    rospy.Subscriber("/joint_player/finished", Bool, lambda m: state.update(finished=m.data))
+    path = []
+    deadline = rospy.Time.now() + rospy.Duration(limit)
+    rate = rospy.Rate(50)
+    while not state["finished"]:
+        if rospy.Time.now() > deadline:
+            raise AssertionError("the dig cycle did not finish within %g s; last phase: %r" % (limit, state["phase"]))
+        if state["phase"] in phases:
+            try:
+                t = buffer.lookup_transform("sand", "bucket_edge", rospy.Time(0)).transform.translation
+                path.append((t.x, t.y, t.z))
+            except tf2_ros.TransformException:
+                pass
+        rate.sleep()
+    return numpy.array(path)
+
+
+def wait_for_rest(limit):
+    """The first status in which the sand has come to rest."""
+    deadline = rospy.Time.now() + rospy.Duration(limit)
+    while rospy.Time.now() < deadline:
+        status = rospy.wait_for_message("/sand_node/status", Status, timeout=5.0)
+        if status.max_speed < 1e-3:
+            return status
+    raise AssertionError("the sand did not come to rest within %g s" % limit)
+
+
+def surface():
+    """Columns x, y, z of the cloud, as rows × columns × 3."""
+    cloud = rospy.wait_for_message("/sand_node/points", PointCloud2, timeout=10.0)
+    values = numpy.frombuffer(cloud.data, dtype=numpy.float32)
+    return values.reshape(cloud.height, cloud.width, cloud.point_step // 4)[:, :, :3].astype(float)
+
+
+class Excavation(unittest.TestCase):
+    def test_trench_heap_and_ledger(self):
+        buffer = tf2_ros.Buffer()
+        listener = tf2_ros.TransformListener(buffer)
+        path = edge_path(buffer, ("dig", "dig_again"), CYCLE_LIMIT)
+        listener.unregister()
+        self.assertGreater(len(path), 100, "tf told of the bucket's edge too rarely")
+        status = wait_for_rest(10.0)
+        points = surface()
+        spacing = rospy.get_param(GRID)["spacing"]
+        self.check_trench(path, points, spacing)
+        self.check_heap(path, points, spacing)
+        self.assertLess(status.volume_error, 1e-6)
+        self.assertGreater(status.volume_start, 0.0)
+        self.assertTrue(all(b.state == BodyStatus.MOVING for b in status.bodies), status.bodies)
+        self.assertIn("bucket", [b.name for b in status.bodies])
+
+    def check_trench(self, path, points, spacing):
+        # Sand slides back from the ends of a cut by its depth over tan 33°.
+        deepest = path[:, 2].min()
+        margin = -deepest / numpy.tan(numpy.radians(33.0)) + spacing
+        low, high = path[:, 0].min() + margin, path[:, 0].max() - margin
+        self.assertGreater(high - low, 0.3)
+        checked = 0
+        for x in numpy.arange(low, high, spacing):
+            under = path[numpy.abs(path[:, 0] - x) < spacing]
+            cell = points[numpy.argmin(numpy.abs(points[:, 0, 1])), numpy.argmin(numpy.abs(points[0, :, 0] - x))]
+            self.assertLess(cell[2], 0.8 * under[:, 2].min(), "trench too shallow at x = %.2f m" % x)
+            checked += 1
+        rospy.loginfo("trench: %d cells checked, edge at %.3f m", checked, deepest)
+
+    def check_heap(self, path, points, spacing):
+        # The original surface is z = 0: what stands above it is as much as what is missing below, and most of it lies in
+        # a heap beside the trench.
+        z = points[:, :, 2]
+        above = z[z > 0].sum() * spacing**2
+        below = -z[z < 0].sum() * spacing**2
+        self.assertAlmostEqual(above, below, delta=1e-3 * below)
+        beside = (points[:, :, 1] > 0.4) & (points[:, :, 0] < path[:, 0].min() + 0.5)
+        heap = z[beside & (z > 0)].sum() * spacing**2
+        rospy.loginfo("%.3f m3 dug out, %.3f m3 of it in the heap, %.3f m high", below, heap, z[beside].max())
+        self.assertGreater(heap, 0.2 * below)
+        self.assertGreater(z[beside].max(), 0.1)
+
+
+if __name__ == "__main__":
+    rospy.init_node("test_excavation")
+    rostest.rosrun("shallow_sand", "excavation", Excavation)
