@@ -73,12 +73,12 @@ FIRST_DIG, FIRST_SWEEP, SECOND_DIG, SECOND_SWEEP = 2.8, 13.6, 21.6, 32.2
 
 WAYPOINTS = [
     (0.0, *TRAVEL),
-    *dig(FIRST_DIG, 3.60, -0.25),
+    *dig(FIRST_DIG, 3.60, -0.12),
     (FIRST_DIG + 9.2, 1.95, -0.55, 0.75, -115.0),
     *sweep(FIRST_SWEEP, 1.30),
     (FIRST_SWEEP + 5.6, 1.80, 1.22, 1.10, -125.0),
     (FIRST_SWEEP + 6.8, 2.90, 0.20, 1.00, -80.0),
-    *dig(SECOND_DIG, 3.70, -0.30),
+    *dig(SECOND_DIG, 3.70, -0.22),
     (SECOND_DIG + 9.2, 1.95, -0.55, 0.75, -115.0),
     *sweep(SECOND_SWEEP, 1.10),
     (SECOND_SWEEP + 5.6, 1.80, 1.02, 1.10, -135.0),

@@ -23,7 +23,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 JOINTS = {joint.get("name"): joint for joint in ElementTree.parse(HERE / "excavator.urdf").getroot().iter("joint")}
 
 # The bucket's size across, in metres.
-BUCKET_WIDTH = 0.60
+BUCKET_WIDTH = 0.90
 BUCKET_PLATE = 0.05  # at least a cell of the sand's grid, so that no plate falls between two columns
 
 
@@ -190,16 +190,17 @@ def bucket_outline():
     return np.concatenate([[edge], back, [lip]])
 
 
-def bucket_shell(plate):
+def bucket_shell(plate, edge_thickness):
     """Floor, back and two side plates of one thickness, as one closed surface."""
     outer = bucket_outline()
     edge, lip = outer[0], outer[-1]
     floor, top = (direction / np.linalg.norm(direction) for direction in (outer[1] - edge, outer[-2] - lip))
     mouth = (lip - edge) / np.linalg.norm(lip - edge)
     inner = offset(outer, plate, closed=False)
-    # The lip ends in the plane of the mouth, and the floor is ground down to an edge, from above.
+    # The lip ends in the plane of the mouth, and the floor is ground down to its edge from above: what touches sand keeps the
+    # whole plate there, for an edge much thinner than a cell is lost between samples of its distance field.
     inner[-1] = lip + mouth * cross(inner[-1] - lip, top) / cross(mouth, top)
-    inner = np.concatenate([[edge + 0.012 * mouth, inner[0] + 0.12 * floor], inner[1:]])
+    inner = np.concatenate([[edge + edge_thickness * mouth, inner[0] + 0.12 * floor], inner[1:]])
 
     half, inside = BUCKET_WIDTH / 2, BUCKET_WIDTH / 2 - plate
     cavity = [inner[[-1, k, k + 1]] for k in range(len(inner) - 2)]
@@ -222,11 +223,11 @@ def bucket_looks():
     forward /= np.linalg.norm(forward)
     up = np.array([forward[1], -forward[0]])
     tooth = [edge - 0.11 * forward, edge - 0.11 * forward + 0.034 * up, edge - 0.07 * forward + 0.034 * up, edge + 0.055 * forward]
-    teeth = [side(tooth, y - 0.03, y + 0.03) for y in np.linspace(-0.26, 0.26, 5)]
+    teeth = [side(tooth, y - 0.03, y + 0.03) for y in np.linspace(-BUCKET_WIDTH / 2 + 0.04, BUCKET_WIDTH / 2 - 0.04, 7)]
     ear = hull(((0.0, 0.0), 0.065), (link, 0.06), ((0.16, 0.20), 0.08), ((0.12, 0.10), 0.06))
     strip = np.concatenate([outer[2:-2], offset(outer, -0.012, closed=False)[2:-2][::-1]])
     strips = [side(strip[::-1], y - 0.02, y + 0.02) for y in (-0.2, 0.0, 0.2)]
-    return np.concatenate([bucket_shell(0.022), *teeth, both_sides(ear, 0.085, 0.12, 0.006), *strips])
+    return np.concatenate([bucket_shell(0.022, 0.012), *teeth, both_sides(ear, 0.085, 0.12, 0.006), *strips])
 
 
 # Boom, stick and the levers of the bucket, each in its own frame with x towards the next pin.
@@ -456,7 +457,7 @@ def main():
     stick_body, stick_lugs = stick()
     floor, bracket = platform()
     meshes = {
-        "bucket": bucket_shell(BUCKET_PLATE), "bucket_looks": bucket_looks(),
+        "bucket": bucket_shell(BUCKET_PLATE, BUCKET_PLATE), "bucket_looks": bucket_looks(),
         "boom": boom_body, "boom_lugs": boom_lugs, "stick": stick_body, "stick_lugs": stick_lugs,
         "rocker": lever(pin("bucket_link"), 0.045, 0.07, 0.10), "bucket_link": lever(pin("bucket_link_end"), 0.05, 0.03, 0.065),
         "track_belt": track_belt(), "track_frame": track_frame(), "undercarriage": undercarriage(), "dozer_blade": dozer_blade(),

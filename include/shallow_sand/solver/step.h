@@ -129,26 +129,34 @@ struct Step {
             j == 0 ? beyondSouth(own, i) : load(at - columns), j == rows - 1 ? beyondNorth(own, i) : load(at + columns)};
   }
 
+  /// Whether a cell is a wall to a neighbour: closed, or under a body whose underside lies lower than the neighbour's
+  /// surface, so that the sand that could flow meets the body's side. A gap under a body lets sand in only from below.
+  SHALLOW_SAND_HOST_DEVICE static bool isWall(const Cell& cell, const Cell& neighbour) {
+    return cell.closed || (with_bodies && neighbour.h + neighbour.b > (cell.h + cell.b) + cell.room);
+  }
+
   /// Flux between two sides of a face that may each be a wall: there the other side is mirrored, and nothing crosses.
   template <bool may_be_closed>
   SHALLOW_SAND_HOST_DEVICE FaceFlux face(FaceSide left, FaceSide right, const Cell& left_cell, const Cell& right_cell,
                                          float level_rise) const {
+    const bool wall_left = may_be_closed && isWall(left_cell, right_cell);
+    const bool wall_right = may_be_closed && isWall(right_cell, left_cell);
     if (may_be_closed) {
       const FaceSide own_left = left;
       const FaceSide own_right = right;
-      left.h = left_cell.closed ? own_right.h : own_left.h;
-      left.u = left_cell.closed ? -own_right.u : own_left.u;
-      left.v = left_cell.closed ? own_right.v : own_left.v;
-      left.b = left_cell.closed ? own_right.b - level_rise : own_left.b;
-      right.h = right_cell.closed ? own_left.h : own_right.h;
-      right.u = right_cell.closed ? -own_left.u : own_right.u;
-      right.v = right_cell.closed ? own_left.v : own_right.v;
-      right.b = right_cell.closed ? own_left.b + level_rise : own_right.b;
+      left.h = wall_left ? own_right.h : own_left.h;
+      left.u = wall_left ? -own_right.u : own_left.u;
+      left.v = wall_left ? own_right.v : own_left.v;
+      left.b = wall_left ? own_right.b - level_rise : own_left.b;
+      right.h = wall_right ? own_left.h : own_right.h;
+      right.u = wall_right ? -own_left.u : own_right.u;
+      right.v = wall_right ? own_left.v : own_right.v;
+      right.b = wall_right ? own_left.b + level_rise : own_right.b;
     }
     FaceFlux flux = faceFlux(left, right, level_rise, sand);
     flux.mass = limitMassFlux(flux.mass, minimum(left_cell.h, right_cell.room), minimum(right_cell.h, left_cell.room),
                               rate);
-    if (may_be_closed) flux.mass = left_cell.closed || right_cell.closed ? 0.0f : flux.mass;
+    if (may_be_closed) flux.mass = wall_left || wall_right ? 0.0f : flux.mass;
     return flux;
   }
 
@@ -192,9 +200,12 @@ struct Step {
             j == rows - 1 ? northEdge(own, n.north) : faceY<with_bodies>(own, n.north)};
   }
 
-  SHALLOW_SAND_HOST_DEVICE float surfaceOf(const Cell& neighbour, float own_surface, float level_rise) const {
+  /// Surface of a neighbour as the pressure sees it; a wall is level with us.
+  SHALLOW_SAND_HOST_DEVICE float surfaceOf(const Cell& neighbour, const Cell& own, float level_rise) const {
+    const float own_surface = own.h + own.b;
     const float surface = pressureSurface(neighbour.h, neighbour.b, own_surface, level_rise);
-    return with_bodies && neighbour.closed ? own_surface + level_rise : surface;
+    const bool wall = with_bodies && (isWall(neighbour, own) || isWall(own, neighbour));
+    return wall ? own_surface + level_rise : surface;
   }
 
   /// Advection (Eq. 8), pressure (Eq. 9, 17) and friction (Eq. 10, 19). A closed cell keeps its depth and loses its
@@ -206,10 +217,9 @@ struct Step {
     q.x = own.hu - per_length * ((f.east.momentum - f.west.momentum) + (f.north.shear - f.south.shear));
     q.y = own.hv - per_length * ((f.north.momentum - f.south.momentum) + (f.east.shear - f.west.shear));
 
-    const float surface = own.h + own.b;
     const float layer = diluteLayer(own.h, sand);
-    const float rise_x = surfaceOf(n.east, surface, sand.level_x) - surfaceOf(n.west, surface, -sand.level_x);
-    const float rise_y = surfaceOf(n.north, surface, sand.level_y) - surfaceOf(n.south, surface, -sand.level_y);
+    const float rise_x = surfaceOf(n.east, own, sand.level_x) - surfaceOf(n.west, own, -sand.level_x);
+    const float rise_y = surfaceOf(n.north, own, sand.level_y) - surfaceOf(n.south, own, -sand.level_y);
     const float half = 0.5f * sand.gravity / sand.spacing;
     q.x = q.x + (dt * layer) * (sand.gravity_x - half * rise_x);
     q.y = q.y + (dt * layer) * (sand.gravity_y - half * rise_y);
