@@ -46,12 +46,12 @@ void Motion::append(double time, const Eigen::Isometry3d& pose) {
 }
 
 void Motion::forgetBefore(double time) {
-  while (keys_.size() > 1 && keys_[1].time <= time) keys_.pop_front();
+  while (keys_.size() > 1 && keys_[1].time < time) keys_.pop_front();
 }
 
 int Motion::segmentAt(double time) const {
-  const auto next = std::upper_bound(keys_.begin(), keys_.end(), time,
-                                     [](double value, const Key& key) { return value < key.time; });
+  const auto next = std::lower_bound(keys_.begin(), keys_.end(), time,
+                                     [](const Key& key, double value) { return key.time < value; });
   if (next == keys_.begin() || next == keys_.end()) return -1;
   return static_cast<int>(std::distance(keys_.begin(), next)) - 1;
 }
@@ -59,15 +59,15 @@ int Motion::segmentAt(double time) const {
 Eigen::Isometry3d Motion::poseAt(double time) const {
   if (keys_.empty()) throw std::logic_error("Motion::poseAt: no pose was appended");
   const int segment = segmentAt(time);
+  const Key& from = segment < 0 ? keys_.front() : keys_[static_cast<std::size_t>(segment)];
+  const Key& to = segment < 0 ? keys_.back() : keys_[static_cast<std::size_t>(segment) + 1];
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  if (segment < 0) {
-    const Key& held = time < keys_.front().time ? keys_.front() : keys_.back();
+  if (time <= from.time || time >= to.time) {
+    const Key& held = time <= from.time ? from : to;
     pose.translation() = held.position;
     pose.linear() = held.rotation.toRotationMatrix();
     return pose;
   }
-  const Key& from = keys_[static_cast<std::size_t>(segment)];
-  const Key& to = keys_[static_cast<std::size_t>(segment) + 1];
   const double part = (time - from.time) / (to.time - from.time);
   pose.translation() = from.position + part * (to.position - from.position);
   pose.linear() = from.rotation.slerp(part, to.rotation).normalized().toRotationMatrix();

@@ -72,7 +72,7 @@ TEST(Motion, passesThroughItsPosesAndRestsOutside) {
   }
   EXPECT_LT(difference(motion.poseAt(keys.front().time - 3.0), keys.front().pose), kRounding);
   EXPECT_LT(difference(motion.poseAt(keys.back().time + 3.0), keys.back().pose), kRounding);
-  for (const double time : {keys.front().time - 1e-9, keys.back().time, keys.back().time + 3.0}) {
+  for (const double time : {keys.front().time - 1e-9, keys.front().time, keys.back().time + 3.0}) {
     EXPECT_EQ(motion.twistAt(time).linear, Eigen::Vector3d::Zero());
     EXPECT_EQ(motion.twistAt(time).angular, Eigen::Vector3d::Zero());
   }
@@ -117,8 +117,8 @@ TEST(Motion, twistIsTheSameAllAlongASegment) {
   std::mt19937 generator = seededGenerator();
   const std::vector<TimedPose> keys = randomKeys(generator);
   const Motion motion = motionThrough(keys);
-  const Twist at_start = motion.twistAt(keys[2].time);
-  const Twist at_end = motion.twistAt(std::nextafter(keys[3].time, keys[2].time));
+  const Twist at_start = motion.twistAt(std::nextafter(keys[2].time, keys[3].time));
+  const Twist at_end = motion.twistAt(keys[3].time);
   EXPECT_EQ(at_start.linear, at_end.linear);
   EXPECT_EQ(at_start.angular, at_end.angular);
 }

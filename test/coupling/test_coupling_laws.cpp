@@ -11,7 +11,7 @@
 namespace shallow_sand {
 namespace {
 
-constexpr int kScenes = 20;
+constexpr int kScenes = 12;
 
 /// Large enough for the bodies, and no multiple of anything.
 int randomCount(std::mt19937& random) { return 30 + static_cast<int>(random() % 20); }
@@ -20,6 +20,13 @@ int randomCount(std::mt19937& random) { return 30 + static_cast<int>(random() % 
 RandomSand restingSand(std::mt19937& random) {
   const int columns = randomCount(random);
   return heldSand(random, columns, randomCount(random), uniform(random, 2.0, 12.0));
+}
+
+/// Sand that rests, so deep that none of it comes to lie on bare rock: a film on rock steeper than the
+/// friction angle runs off more and more slowly, but for ever.
+RandomSand deepRestingSand(std::mt19937& random) {
+  const int columns = randomCount(random);
+  return heldSand(random, columns, randomCount(random), uniform(random, 30.0, 40.0));
 }
 
 /// Uneven sand of which much moves at once.
@@ -106,21 +113,82 @@ TEST(CouplingLaws, HoveringBodyLeavesMovingSandAlone) {
 TEST(CouplingLaws, SandSettlesAroundARestingBodyAndStays) {
   std::mt19937 random = seededGenerator();
   for (int scene = 0; scene < kScenes; ++scene) {
-    const RandomSand sand = restingSand(random);
+    const RandomSand sand = deepRestingSand(random);
     Simulator simulator(sand.parameters, sand.bed, sand.depth);
     RandomBody body = randomBody(random, sand.parameters.grid.spacing);
     rest(random, sand, body);
     addTo(simulator, body);
-    const double latest = 30.0;
-    do {
-      simulator.advance(0.1);
-    } while (simulator.activeCells() > 0 && simulator.time() < latest);
-    EXPECT_EQ(simulator.activeCells(), 0u) << "scene " << scene << ": fastest " << simulator.maxSpeed()
-                                           << " m/s after " << simulator.time() << " s";
-    if (simulator.activeCells() > 0) continue;
-    const Fields settled = simulator.fields();
+    const double latest = 20.0;
+    Fields settled = simulator.fields();
+    bool settles = false;
+    while (!settles && simulator.time() < latest) {
+      simulator.advance(0.2);
+      const Fields now = simulator.fields();
+      settles = simulator.activeCells() == 0 && sameBits(now.depth, settled.depth);
+      settled = now;
+    }
+    EXPECT_TRUE(settles) << "scene " << scene << ": " << simulator.activeCells()
+                         << " cells move, the fastest at " << simulator.maxSpeed() << " m/s";
+    if (!settles) continue;
     simulator.advance(1.0);
     expectSameSand(simulator.fields(), settled, scene);
+  }
+}
+
+/// Far from the surface a distance is only a lower bound, and not the same on both sides.
+DistanceField mirrored(DistanceField field) {
+  const std::size_t across = static_cast<std::size_t>(field.samples[0]);
+  for (std::size_t row = 0; row < field.distance.size(); row += across) {
+    for (std::size_t i = 0; i < across / 2; ++i)
+      field.distance[row + across - 1 - i] = field.distance[row + i];
+  }
+  return field;
+}
+
+/// A box that is pushed along y through a bed of even depth, in the middle of the grid: everything is its own
+/// mirror image. Lengths are binary fractions and the middles of columns lie on samples of the distance
+/// field, so that left and right are rounded alike.
+TEST(CouplingLaws, WakeOfAMirrorSymmetricBodyIsMirrorSymmetricInEveryBit) {
+  std::mt19937 random = seededGenerator();
+  for (int scene = 0; scene < kScenes; ++scene) {
+    SimulatorParameters parameters;
+    const int columns = 31 + 2 * static_cast<int>(random() % 5);
+    const double spacing = 1.0 / 32.0;
+    parameters.grid.size = {columns * spacing, 40 * spacing};
+    parameters.grid.spacing = spacing;
+    parameters.material.friction_angle = uniform(random, 10.0, 50.0) * M_PI / 180.0;
+    parameters.backend = Backend::cpu;
+    const Grid grid = parameters.grid.grid();
+    const float depth = static_cast<float>(uniform(random, 2.0, 8.0) * spacing);
+    Simulator simulator(parameters, std::vector<float>(grid.cells(), 0.0f),
+                        std::vector<float>(grid.cells(), depth));
+
+    const auto cells = [&](int least, int most) {
+      return spacing * (least + static_cast<int>(random() % static_cast<unsigned>(most - least + 1)));
+    };
+    const TriangleMesh box = triangulate(Box{{cells(4, 10), cells(4, 8), cells(4, 8)}});
+    const std::size_t body = simulator.addBody(
+        "box", std::make_shared<const DistanceField>(mirrored(computeDistanceField(box, 0.5 * spacing))));
+    const double middle = 0.5 * columns * spacing;
+    const double height = uniform(random, 0.3, 1.5) * depth;
+    const double turn = uniform(random, -1.0, 1.0);  // about x, which leaves it mirror symmetric
+    const double speed = uniform(random, 0.1, 2.0);
+    for (const double time : {0.0, 0.3}) {
+      simulator.appendPose(body, time,
+                           Eigen::Translation3d(middle, 10.0 * spacing + speed * time, height) *
+                               Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitX()));
+    }
+    simulator.advance(0.6);
+    const Fields fields = simulator.fields();
+    for (int j = 0; j < grid.rows; ++j) {
+      for (int i = 0; i < grid.columns; ++i) {
+        const std::size_t k = grid.index(i, j);
+        const std::size_t other = grid.index(grid.columns - 1 - i, j);
+        ASSERT_EQ(fields.depth[k], fields.depth[other]) << "scene " << scene;
+        ASSERT_EQ(fields.momentum_x[k], -fields.momentum_x[other]) << "scene " << scene;
+        ASSERT_EQ(fields.momentum_y[k], fields.momentum_y[other]) << "scene " << scene;
+      }
+    }
   }
 }
 

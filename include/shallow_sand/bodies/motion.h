@@ -21,8 +21,11 @@ class Motion {
   /// Drops what no query at or after `time` needs.
   void forgetBefore(double time);
   bool empty() const { return keys_.empty(); }
+  /// @throws std::logic_error when there is no pose
   Eigen::Isometry3d poseAt(double time) const;
-  Twist twistAt(double time) const;  ///< of the segment that begins at or before `time`
+  /// With which the body came to where it is at `time`: of the segment that ends at or after `time`. A node that learns
+  /// poses one by one never knows a later segment.
+  Twist twistAt(double time) const;
 
  private:
   struct Key {
@@ -30,7 +33,7 @@ class Motion {
     Eigen::Vector3d position;
     Eigen::Quaterniond rotation;
   };
-  /// Index of the segment [key, next key) that holds `time`; negative outside of all.
+  /// Index of the segment (key, next key] that holds `time`; negative outside of all.
   int segmentAt(double time) const;
   std::deque<Key> keys_;
 };

@@ -6,8 +6,9 @@
 
 namespace shallow_sand {
 
-/// Distance of every column to the nearest one that is not full up to a body, in cells and along the axes: a pass along
-/// the columns, then one along the rows. Calls (0, k): k counts columns of the window.
+/// Distance of every column to the nearest one that can take the sand of a body, in cells and along the axes: a pass
+/// along the columns, then one along the rows. A gap under a body that is lower than a cell takes none: sand that a blade
+/// pushes would else end behind its edge. Calls (0, k): k counts columns of the window.
 struct DistanceAlongColumns {
   ContactFields contact;
   const float* depth;
@@ -24,7 +25,7 @@ struct DistanceAlongColumns {
     int nearest = kFar;
     for (int j = window.row_begin; j < window.row_end; ++j) {
       const long long at = static_cast<long long>(j) * columns + i;
-      nearest = !isFull(depth[at], contact.ceiling[at], spacing) ? 0 : (nearest < kFar ? nearest + 1 : kFar);
+      nearest = contact.ceiling[at] - depth[at] >= spacing ? 0 : (nearest < kFar ? nearest + 1 : kFar);
       distance[at] = nearest;
     }
     nearest = kFar;
