@@ -20,7 +20,8 @@ inline std::vector<float> randomWaves(std::mt19937& random, const Grid& grid) {
   };
   std::vector<Wave> waves(6);
   for (Wave& wave : waves) {
-    const double length = grid.spacing * std::exp(uniform(random, std::log(4.0), std::log(4.0 + grid.columns)));
+    const double length =
+        grid.spacing * std::exp(uniform(random, std::log(4.0), std::log(4.0 + grid.columns)));
     const double heading = uniform(random, 0.0, 2.0 * M_PI);
     wave = {2.0 * M_PI / length * std::cos(heading), 2.0 * M_PI / length * std::sin(heading),
             uniform(random, 0.0, 2.0 * M_PI)};
@@ -29,7 +30,8 @@ inline std::vector<float> randomWaves(std::mt19937& random, const Grid& grid) {
   for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i) {
       double value = 0.0;
-      for (const Wave& wave : waves) value += std::sin(wave.kx * grid.x(i) + wave.ky * grid.y(j) + wave.phase);
+      for (const Wave& wave : waves)
+        value += std::sin(wave.kx * grid.x(i) + wave.ky * grid.y(j) + wave.phase);
       values[grid.index(i, j)] = static_cast<float>(value / static_cast<double>(waves.size()));
     }
   }
@@ -69,9 +71,9 @@ inline RandomSand randomSand(std::mt19937& random, int columns, int rows) {
   return sand;
 }
 
-/// A random surface that friction holds: from a cell to the next it rises by at most 0.67 μ ΔL along each axis, so its
-/// slope is at most 0.95 μ; above an uneven bed that stands out of it here and there, the less the more cells
-/// the surface is lifted; in tilted gravity.
+/// A random surface that friction holds: from a cell to the next it rises by at most 0.67 μ ΔL along each
+/// axis, so its slope is at most 0.95 μ; above an uneven bed that stands out of it here and there, the less
+/// the more cells the surface is lifted; in tilted gravity.
 inline RandomSand heldSand(std::mt19937& random, int columns, int rows, double lifted_cells = 0.0) {
   RandomSand sand = randomSand(random, columns, rows);
   const Grid grid = sand.parameters.grid.grid();

@@ -34,14 +34,16 @@ int cellsAlong(const std::string& key, double size, double spacing) {
     throw InvalidParameter(key, text(size), "at most 2^28 cells of grid.spacing " + text(spacing) + " m");
   }
   if (std::abs(count * spacing - size) > 1e-6 * size) {
-    throw InvalidParameter(key, text(size), "a whole number of cells of grid.spacing " + text(spacing) + " m");
+    throw InvalidParameter(key, text(size),
+                           "a whole number of cells of grid.spacing " + text(spacing) + " m");
   }
   return static_cast<int>(count);
 }
 
 }  // namespace
 
-InvalidParameter::InvalidParameter(const std::string& key, const std::string& found, const std::string& expected)
+InvalidParameter::InvalidParameter(const std::string& key, const std::string& found,
+                                   const std::string& expected)
     : std::runtime_error(key + ": " + found + "; expected " + expected) {}
 
 void GridParameters::validate() const {
@@ -76,10 +78,12 @@ void Material::validate() const {
                            "an angle from 0 to less than 90 degrees");
   }
   if (!(layer_fraction > 0.0 && layer_fraction <= 1.0)) {
-    throw InvalidParameter("material.dilute_layer.fraction", text(layer_fraction), "a number above 0, at most 1");
+    throw InvalidParameter("material.dilute_layer.fraction", text(layer_fraction),
+                           "a number above 0, at most 1");
   }
   if (!(layer_depth > 0.0)) {
-    throw InvalidParameter("material.dilute_layer.depth", text(layer_depth), "a positive number of metres, or .inf");
+    throw InvalidParameter("material.dilute_layer.depth", text(layer_depth),
+                           "a positive number of metres, or .inf");
   }
 }
 
@@ -96,15 +100,18 @@ void Pour::validate() const {
   requireFinite("position[1]", position.y(), "metres");
   requirePositive("radius", radius, "metres");
   requireFinite("rate", rate, "cubic metres a second");
-  if (rate < 0.0) throw InvalidParameter("rate", text(rate), "a number of cubic metres a second that is not negative");
+  if (rate < 0.0)
+    throw InvalidParameter("rate", text(rate), "a number of cubic metres a second that is not negative");
   requireFinite("start", start, "seconds");
-  if (!(stop > start)) throw InvalidParameter("stop", text(stop), "a time after start (" + text(start) + " s)");
+  if (!(stop > start))
+    throw InvalidParameter("stop", text(stop), "a time after start (" + text(start) + " s)");
 }
 
 void validateGravity(const Eigen::Vector3d& gravity) {
   if (!gravity.allFinite() || !(gravity.z() < 0.0)) {
-    throw InvalidParameter("gravity", "[" + text(gravity.x()) + ", " + text(gravity.y()) + ", " + text(gravity.z()) + "]",
-                           "three finite numbers of m/s^2, the third negative (z points up)");
+    throw InvalidParameter(
+        "gravity", "[" + text(gravity.x()) + ", " + text(gravity.y()) + ", " + text(gravity.z()) + "]",
+        "three finite numbers of m/s^2, the third negative (z points up)");
   }
 }
 

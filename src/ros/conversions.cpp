@@ -2,6 +2,8 @@
 
 #include <sensor_msgs/point_cloud2_iterator.h>
 
+#include "shallow_sand/surface/surface.h"
+
 namespace shallow_sand {
 
 sensor_msgs::PointCloud2 toPointCloud(const Grid& grid, const Fields& fields, const std::string& frame,

@@ -33,8 +33,8 @@ YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
 
 /// Takes a key out of the node's parameters, so that what stays are the keys of a scene.
 template <class T>
-void take(YAML::Node& parameters, const std::string& source, const std::string& key, const std::string& expected,
-          T& value) {
+void take(YAML::Node& parameters, const std::string& source, const std::string& key,
+          const std::string& expected, T& value) {
   if (!parameters[key]) return;
   try {
     value = parameters[key].as<T>();

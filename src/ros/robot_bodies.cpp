@@ -14,8 +14,8 @@ RobotBodies::RobotBodies(const std::string& urdf, const NodeParameters& paramete
   for (const std::string& problem : robot.problems) ROS_ERROR_STREAM(problem);
   std::size_t done = 0;
   for (const LinkGeometry& geometry : robot.links) {
-    ROS_INFO_STREAM("robot " << robot.robot << ": distance field of link " << geometry.link << " (" << ++done << " of "
-                             << robot.links.size() << ")");
+    ROS_INFO_STREAM("robot " << robot.robot << ": distance field of link " << geometry.link << " (" << ++done
+                             << " of " << robot.links.size() << ")");
     const double spacing = distanceSpacing(geometry.mesh, simulator.grid().spacing);
     Link link;
     link.name = geometry.link;
@@ -27,7 +27,8 @@ RobotBodies::RobotBodies(const std::string& urdf, const NodeParameters& paramete
     links_.push_back(link);
   }
   if (links_.empty()) {
-    ROS_ERROR_STREAM("robot " << robot.robot << " has no link with collision geometry that can be read; it leaves no "
+    ROS_ERROR_STREAM("robot " << robot.robot
+                              << " has no link with collision geometry that can be read; it leaves no "
                               << "trace in the sand");
   }
 }
@@ -38,10 +39,11 @@ void RobotBodies::update(const tf2_ros::Buffer& buffer, const ros::Time& now, do
   for (Link& link : links_) updateLink(link, buffer, now, simulated_time, simulator);
 }
 
-void RobotBodies::updateLink(Link& link, const tf2_ros::Buffer& buffer, const ros::Time& now, double simulated_time,
-                             Simulator& simulator) {
+void RobotBodies::updateLink(Link& link, const tf2_ros::Buffer& buffer, const ros::Time& now,
+                             double simulated_time, Simulator& simulator) {
   try {
-    const geometry_msgs::TransformStamped transform = buffer.lookupTransform(sand_frame_, link.frame, ros::Time(0));
+    const geometry_msgs::TransformStamped transform =
+        buffer.lookupTransform(sand_frame_, link.frame, ros::Time(0));
     // A stamp of zero: nothing but static transforms, which hold for ever.
     const bool timed = !transform.header.stamp.isZero();
     const ros::Duration age = now - transform.header.stamp;
@@ -69,8 +71,8 @@ void RobotBodies::report(Link& link, std::uint8_t state, const std::string& prob
   if (problem.empty()) {
     ROS_INFO_STREAM("link " << link.name << " is in the sand's frame " << sand_frame_);
   } else {
-    ROS_ERROR_STREAM("link " << link.name << ": no pose from tf frame " << link.frame << " in the sand's frame "
-                             << sand_frame_ << ": " << problem << "; "
+    ROS_ERROR_STREAM("link " << link.name << ": no pose from tf frame " << link.frame
+                             << " in the sand's frame " << sand_frame_ << ": " << problem << "; "
                              << (state == BodyStatus::WAITING ? "it stays out of the sand until one comes"
                                                               : "it rests where it was last seen"));
   }

@@ -12,8 +12,8 @@ namespace shallow_sand {
 
 namespace {
 
-/// Sand time that one frame may catch up [s]; what lies further back is given up, so that a slow machine stays
-/// responsive and a paused one does not race afterwards.
+/// Sand time that one frame may catch up [s]; what lies further back is given up, so that a slow machine
+/// stays responsive and a paused one does not race afterwards.
 constexpr double kLongestFrame = 0.1;
 
 }  // namespace
@@ -36,7 +36,8 @@ void SandNode::run() {
     ros::spinOnce();
     const ros::Time now = ros::Time::now();
     if (now < last_frame_) {
-      ROS_WARN_STREAM("time went back by " << (last_frame_ - now).toSec() << " s; the sand goes on from here");
+      ROS_WARN_STREAM("time went back by " << (last_frame_ - now).toSec()
+                                           << " s; the sand goes on from here");
       last_frame_ = last_surface_ = last_status_ = last_search_ = ros::Time();
       buffer_.clear();
     }
@@ -56,7 +57,8 @@ void SandNode::findRobot(const ros::Time& now) {
   last_search_ = now;
   std::string urdf;
   const std::string name = node_.resolveName(parameters_.robot_description);
-  std::string problem = "parameter " + name + " is not set; expected the URDF of a robot, as robot_state_publisher has it";
+  std::string problem =
+      "parameter " + name + " is not set; expected the URDF of a robot, as robot_state_publisher has it";
   if (node_.getParam(name, urdf)) {
     try {
       robot_.emplace(urdf, parameters_, simulator_);
@@ -84,7 +86,8 @@ void SandNode::publishSurface(const ros::Time& now) {
   const std::string& frame = parameters_.scene.parameters.grid.frame;
   const Fields fields = simulator_.fields();
   points_.publish(toPointCloud(simulator_.grid(), fields, frame, now));
-  // A mesh takes forty bytes a corner: made only when somebody looks, or once, so that whoever comes later sees sand.
+  // A mesh takes forty bytes a corner: made only when somebody looks, or once, so that whoever comes later
+  // sees sand.
   if (mesh_.getNumSubscribers() > 0 || last_surface_.isZero()) {
     mesh_.publish(toMarker(simulator_.grid(), fields, frame, now));
   }

@@ -133,7 +133,8 @@ class Simulator::Implementation {
       found << "[" << pour.position.x() << ", " << pour.position.y() << "]";
       throw InvalidParameter("position", found.str(), "a place on the grid");
     }
-    engine_->addPour(static_cast<float>(local.x()), static_cast<float>(local.y()), static_cast<float>(pour.radius));
+    engine_->addPour(static_cast<float>(local.x()), static_cast<float>(local.y()),
+                     static_cast<float>(pour.radius));
     pours_.push_back(pour);
   }
 
@@ -234,7 +235,8 @@ class Simulator::Implementation {
     view.angular = toVector3(twist.angular);
     Eigen::AlignedBox3d box;
     for (int corner = 0; corner < 8; ++corner) {
-      const Eigen::Vector3d steps(corner & 1 ? field.samples[0] - 1 : 0, corner & 2 ? field.samples[1] - 1 : 0,
+      const Eigen::Vector3d steps(corner & 1 ? field.samples[0] - 1 : 0,
+                                  corner & 2 ? field.samples[1] - 1 : 0,
                                   corner & 4 ? field.samples[2] - 1 : 0);
       box.extend(pose * (field.origin + field.spacing * steps));
     }
@@ -247,14 +249,17 @@ class Simulator::Implementation {
   /// Cells whose centre may lie under the box.
   Window windowOf(const Eigen::AlignedBox3d& box) const {
     const auto clamp = [&](double position, int count) {
-      return static_cast<int>(std::clamp(std::floor(position / grid_.spacing), 0.0, static_cast<double>(count)));
+      return static_cast<int>(
+          std::clamp(std::floor(position / grid_.spacing), 0.0, static_cast<double>(count)));
     };
     return {clamp(box.min().x(), grid_.columns), clamp(box.min().y(), grid_.rows),
-            clamp(box.max().x() + grid_.spacing, grid_.columns), clamp(box.max().y() + grid_.spacing, grid_.rows)};
+            clamp(box.max().x() + grid_.spacing, grid_.columns),
+            clamp(box.max().y() + grid_.spacing, grid_.rows)};
   }
 
   Ledger ledger() const {
-    return {start_volume_, engine_->poured(), engine_->left(), sum(engine_->fields().depth) * grid_.cellArea()};
+    return {start_volume_, engine_->poured(), engine_->left(),
+            sum(engine_->fields().depth) * grid_.cellArea()};
   }
 
   SimulatorParameters parameters_;

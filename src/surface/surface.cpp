@@ -10,11 +10,13 @@ namespace {
 const Eigen::Vector3f kSand(0.93f, 0.78f, 0.54f);
 const Eigen::Vector3f kBareBed(0.52f, 0.51f, 0.50f);
 
-/// How much light a point gets from the north-west, 1 where the ground is level. Viewers light a mesh from the camera,
-/// which hides ruts; this shows them.
+/// How much light a point gets from the north-west, 1 where the ground is level. Viewers light a mesh from
+/// the camera, which hides ruts; this shows them.
 float relief(const Surface& surface, const Grid& grid, int i, int j) {
   const auto elevation = [&](int column, int row) {
-    return surface.points[grid.index(std::clamp(column, 0, grid.columns - 1), std::clamp(row, 0, grid.rows - 1))].z();
+    return surface
+        .points[grid.index(std::clamp(column, 0, grid.columns - 1), std::clamp(row, 0, grid.rows - 1))]
+        .z();
   };
   const float slope_x = (elevation(i + 1, j) - elevation(i - 1, j)) / (2.0f * grid.spacing);
   const float slope_y = (elevation(i, j + 1) - elevation(i, j - 1)) / (2.0f * grid.spacing);
@@ -32,7 +34,8 @@ Surface surfaceOf(const Grid& grid, const Fields& fields) {
   for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i) {
       const std::size_t k = grid.index(i, j);
-      surface.points[k] = Eigen::Vector3d(grid.x(i), grid.y(j), fields.bed[k] + fields.depth[k]).cast<float>();
+      surface.points[k] =
+          Eigen::Vector3d(grid.x(i), grid.y(j), fields.bed[k] + fields.depth[k]).cast<float>();
     }
   }
   for (int j = 0; j < grid.rows; ++j) {

@@ -5,7 +5,8 @@
 namespace shallow_sand {
 namespace {
 
-/// Dam break on a plane steeper than the friction angle (Mangeney, Heinrich and Roche 2000), dilute layer = whole depth.
+/// Dam break on a plane steeper than the friction angle (Mangeney, Heinrich and Roche 2000), dilute layer =
+/// whole depth.
 struct ExactDamBreak {
   double slope = 0.3;
   double friction = 0.2;
@@ -57,7 +58,8 @@ TEST(ExactDamBreak, ErrorFallsWithTheSpacing) {
   const double coarse = relativeError(100);
   const double middle = relativeError(200);
   const double fine = relativeError(400);
-  std::cout << "relative L1 error at 100, 200, 400 cells: " << coarse << " " << middle << " " << fine << std::endl;
+  std::cout << "relative L1 error at 100, 200, 400 cells: " << coarse << " " << middle << " " << fine
+            << std::endl;
   EXPECT_LT(coarse, 0.09);
   EXPECT_LT(fine, 0.04);
   // First-order schemes reach an order of 1/2 to 1 on solutions with corners.

@@ -42,7 +42,8 @@ TEST(StepLaws, OnlyOpenEdgesLoseSand) {
   std::mt19937 random = seededGenerator();
   for (int scene = 0; scene < kScenes; ++scene) {
     RandomSand sand = randomSand(random, 12, 9);
-    sand.parameters.gravity = {4.0, 0.0, -4.0};  // flows towards larger x whatever its friction, which is under 45°
+    sand.parameters.gravity = {4.0, 0.0,
+                               -4.0};  // flows towards larger x whatever its friction, which is under 45°
     sand.parameters.material.friction_angle = uniform(random, 5.0, 40.0) * M_PI / 180.0;
     std::fill(sand.bed.begin(), sand.bed.end(), 0.0f);
     std::fill(sand.depth.begin(), sand.depth.end(), static_cast<float>(10.0 * sand.parameters.grid.spacing));
@@ -105,7 +106,8 @@ std::vector<float> transformed(const std::vector<float>& values, const Grid& gri
     for (int i = 0; i < grid.columns; ++i) {
       const int x = symmetry.sign_x < 0.0 ? grid.columns - 1 - i : i;
       const int y = symmetry.sign_y < 0.0 ? grid.rows - 1 - j : j;
-      const std::size_t target = symmetry.transposes ? static_cast<std::size_t>(x) * grid.rows + y : grid.index(x, y);
+      const std::size_t target =
+          symmetry.transposes ? static_cast<std::size_t>(x) * grid.rows + y : grid.index(x, y);
       result[target] = values[grid.index(i, j)];
     }
   }

@@ -13,7 +13,8 @@ struct DistanceFieldView {
   float spacing = 0.0f;
   Vector3 origin;
 
-  /// Trilinear interpolation; outside of the sampled box a length of one spacing, which is outside of the body.
+  /// Trilinear interpolation; outside of the sampled box a length of one spacing, which is outside of the
+  /// body.
   SHALLOW_SAND_HOST_DEVICE float sample(Vector3 p) const {
     const float x = (p.x - origin.x) / spacing;
     const float y = (p.y - origin.y) / spacing;

@@ -11,20 +11,20 @@ struct Twist {
   Eigen::Vector3d angular{0, 0, 0};  ///< [rad/s]
 };
 
-/// Timed poses of a body in the grid's frame; between two of them the origin moves on a straight line and the body
-/// turns about one axis, both at constant rate. Before the first and after the last pose the body rests.
+/// Timed poses of a body in the grid's frame; between two of them the origin moves on a straight line and the
+/// body turns about one axis, both at constant rate. Before the first and after the last pose the body rests.
 class Motion {
  public:
-  /// @throws InvalidParameter if the pose is not finite, its rotation not orthonormal within 1e-3, or `time` not
-  /// after the last one
+  /// @throws InvalidParameter if the pose is not finite, its rotation not orthonormal within 1e-3, or `time`
+  /// not after the last one
   void append(double time, const Eigen::Isometry3d& pose);
   /// Drops what no query at or after `time` needs.
   void forgetBefore(double time);
   bool empty() const { return keys_.empty(); }
   /// @throws std::logic_error when there is no pose
   Eigen::Isometry3d poseAt(double time) const;
-  /// With which the body came to where it is at `time`: of the segment that ends at or after `time`. A node that learns
-  /// poses one by one never knows a later segment.
+  /// With which the body came to where it is at `time`: of the segment that ends at or after `time`. A node
+  /// that learns poses one by one never knows a later segment.
   Twist twistAt(double time) const;
 
  private:

@@ -30,8 +30,8 @@ struct GridParameters {
 /// Dry sand. Scene key `material`.
 struct Material {
   double friction_angle = 0.5585053606381855;  ///< [rad], 32°; 0 ≤ angle < 90° (paper: θ, μ = tan θ)
-  double layer_fraction = 1.0;                 ///< dilute layer h̄: layer(h) = min(fraction·h, depth); 0 < fraction ≤ 1
-  double layer_depth = 0.1;                    ///< [m], positive, may be infinite (then h̄ = fraction·h)
+  double layer_fraction = 1.0;  ///< dilute layer h̄: layer(h) = min(fraction·h, depth); 0 < fraction ≤ 1
+  double layer_depth = 0.1;     ///< [m], positive, may be infinite (then h̄ = fraction·h)
 
   void validate() const;  ///< @throws InvalidParameter
 };
@@ -51,19 +51,20 @@ struct Edges {
 
 /// How time is cut into steps. Scene key `solver`.
 struct SolverParameters {
-  double courant = 0.45;             ///< C of Eq. 14 and 34; 0 < C < 1
-  double max_step = 0.01;            ///< no step is longer [s]
-  std::optional<double> fixed_step;  ///< this step instead [s]; a run in which it breaks the bound of `courant` ends
+  double courant = 0.45;   ///< C of Eq. 14 and 34; 0 < C < 1
+  double max_step = 0.01;  ///< no step is longer [s]
+  std::optional<double>
+      fixed_step;  ///< this step instead [s]; a run in which it breaks the bound of `courant` ends
 
   void validate() const;  ///< @throws InvalidParameter
 };
 
 /// Sand that falls on a disc at a steady rate. Scene key `pours`.
 struct Pour {
-  Eigen::Vector2d position{0.0, 0.0};                    ///< centre of the disc, in the grid's frame [m]
-  double radius = 0.1;                                   ///< [m], positive
-  double rate = 0.0;                                     ///< [m³/s], not negative
-  double start = 0.0;                                    ///< [s]
+  Eigen::Vector2d position{0.0, 0.0};                     ///< centre of the disc, in the grid's frame [m]
+  double radius = 0.1;                                    ///< [m], positive
+  double rate = 0.0;                                      ///< [m³/s], not negative
+  double start = 0.0;                                     ///< [s]
   double stop = std::numeric_limits<double>::infinity();  ///< [s], after start
 
   void validate() const;  ///< @throws InvalidParameter

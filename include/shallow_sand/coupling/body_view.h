@@ -4,8 +4,8 @@
 
 namespace shallow_sand {
 
-/// A rigid body at one instant, as kernels see it. Positions are relative to the corner of cell (0, 0), so that floats
-/// stay exact on maps far from their frame's origin. [m, m/s, rad/s]
+/// A rigid body at one instant, as kernels see it. Positions are relative to the corner of cell (0, 0), so
+/// that floats stay exact on maps far from their frame's origin. [m, m/s, rad/s]
 struct BodyView {
   DistanceFieldView field;
   Vector3 axis_x;  ///< the grid's axes in the body's frame

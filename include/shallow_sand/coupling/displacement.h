@@ -6,9 +6,10 @@
 
 namespace shallow_sand {
 
-/// Distance of every column to the nearest one that can take the sand of a body, in cells and along the axes: a pass
-/// along the columns, then one along the rows. A gap under a body that is lower than a cell takes none: sand that a blade
-/// pushes would else end behind its edge. Calls (0, k): k counts columns of the window.
+/// Distance of every column to the nearest one that can take the sand of a body, in cells and along the axes:
+/// a pass along the columns, then one along the rows. A gap under a body that is lower than a cell takes
+/// none: sand that a blade pushes would else end behind its edge. Calls (0, k): k counts columns of the
+/// window.
 struct DistanceAlongColumns {
   ContactFields contact;
   const float* depth;
@@ -54,9 +55,9 @@ struct DistanceAlongRows {
   }
 };
 
-/// Sand that lies where a body is goes to those neighbours that are nearer to the body's edge, with the velocity that
-/// Eq. 20 gives it; the vertical motion of the body pushes the sand of its neighbours (Eq. 24). Written as a gather, so
-/// the order of cells does not matter and no sand is lost.
+/// Sand that lies where a body is goes to those neighbours that are nearer to the body's edge, with the
+/// velocity that Eq. 20 gives it; the vertical motion of the body pushes the sand of its neighbours (Eq. 24).
+/// Written as a gather, so the order of cells does not matter and no sand is lost.
 struct DisplaceSand {
   ContactFields contact;
   const int* distance;
@@ -71,8 +72,8 @@ struct DisplaceSand {
   Window window;  ///< of the distances; its outermost cells are clear of bodies or at the edge of the grid
 
   struct Column {
-    float excess;   ///< depth of the sand that must go [m]
-    float share;    ///< of it, to each neighbour that takes some [m]
+    float excess;      ///< depth of the sand that must go [m]
+    float share;       ///< of it, to each neighbour that takes some [m]
     Momentum carried;  ///< momentum that goes with a share
     bool to_west;
     bool to_east;
@@ -83,7 +84,9 @@ struct DisplaceSand {
   SHALLOW_SAND_HOST_DEVICE bool inside(int i, int j) const {
     return i >= window.column_begin && i < window.column_end && j >= window.row_begin && j < window.row_end;
   }
-  SHALLOW_SAND_HOST_DEVICE long long index(int i, int j) const { return static_cast<long long>(j) * columns + i; }
+  SHALLOW_SAND_HOST_DEVICE long long index(int i, int j) const {
+    return static_cast<long long>(j) * columns + i;
+  }
   SHALLOW_SAND_HOST_DEVICE bool nearer(int i, int j, int than) const {
     return inside(i, j) && distance[index(i, j)] < than;
   }
@@ -113,8 +116,8 @@ struct DisplaceSand {
     return c;
   }
 
-  /// A moving body pushes ahead and aside: sand goes behind it only if it can go nowhere else. Without this a blade one
-  /// cell thick would let half of its sand through.
+  /// A moving body pushes ahead and aside: sand goes behind it only if it can go nowhere else. Without this a
+  /// blade one cell thick would let half of its sand through.
   SHALLOW_SAND_HOST_DEVICE static void keepAhead(Column& c, float velocity_x, float velocity_y) {
     const bool west = c.to_west && !(velocity_x > 0.0f);
     const bool east = c.to_east && !(velocity_x < 0.0f);

@@ -13,10 +13,10 @@ struct SolidInterval {
   float top;
 };
 
-/// Marches up a vertical ray through one body, from `from` to `to`, and reports the lowest solid interval between them
-/// and the length of all solid intervals below `surface` (section 5, steps 1–3: the body's signed distance field is
-/// sampled along the ray; where its sign changes, the crossing is found by linear interpolation). [m]
-/// `lowest` is left alone if the ray meets nothing.
+/// Marches up a vertical ray through one body, from `from` to `to`, and reports the lowest solid interval
+/// between them and the length of all solid intervals below `surface` (section 5, steps 1–3: the body's
+/// signed distance field is sampled along the ray; where its sign changes, the crossing is found by linear
+/// interpolation). [m] `lowest` is left alone if the ray meets nothing.
 SHALLOW_SAND_HOST_DEVICE inline float castRay(const BodyView& body, float x, float y, float from, float to,
                                               float surface, SolidInterval& lowest, bool& found) {
   const float shortest = body.field.spacing;
@@ -58,7 +58,7 @@ struct ContactFields {
   float* velocity_x;  ///< mean velocity V + ω × r of the body over that length [m/s]
   float* velocity_y;
   float* velocity_z;
-  float* overlap;     ///< of all solid intervals within the sand [m]
+  float* overlap;  ///< of all solid intervals within the sand [m]
 };
 
 /// Casts the ray of one column through all bodies. Bodies that hang clear above the sand are not seen.

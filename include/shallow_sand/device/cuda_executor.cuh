@@ -32,7 +32,8 @@ __global__ void maximumKernel(Window window, Function function, int* result) {
   const int i = window.column_begin + static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   const int j = window.row_begin + static_cast<int>(blockIdx.y * blockDim.y + threadIdx.y);
   int value = i < window.column_end && j < window.row_end ? __float_as_int(function(i, j)) : 0;
-  for (int offset = 16; offset > 0; offset /= 2) value = max(value, __shfl_xor_sync(0xffffffffu, value, offset));
+  for (int offset = 16; offset > 0; offset /= 2)
+    value = max(value, __shfl_xor_sync(0xffffffffu, value, offset));
   if (threadIdx.x == 0 && value > 0) atomicMax(result, value);
 }
 
@@ -57,10 +58,12 @@ class CudaExecutor {
     T* data() { return data_; }
     const T* data() const { return data_; }
     void upload(const T* source, std::size_t count, std::size_t offset = 0) {
-      checkCuda(cudaMemcpy(data_ + offset, source, count * sizeof(T), cudaMemcpyHostToDevice), "copy to device");
+      checkCuda(cudaMemcpy(data_ + offset, source, count * sizeof(T), cudaMemcpyHostToDevice),
+                "copy to device");
     }
     void download(T* target, std::size_t count, std::size_t offset = 0) const {
-      checkCuda(cudaMemcpy(target, data_ + offset, count * sizeof(T), cudaMemcpyDeviceToHost), "copy to host");
+      checkCuda(cudaMemcpy(target, data_ + offset, count * sizeof(T), cudaMemcpyDeviceToHost),
+                "copy to host");
     }
 
    private:
@@ -94,7 +97,8 @@ class CudaExecutor {
  private:
   static dim3 block() { return dim3(32, 4); }
   static dim3 blocks(const Window& window) {
-    return dim3(static_cast<unsigned>((window.columns() + 31) / 32), static_cast<unsigned>((window.rows() + 3) / 4));
+    return dim3(static_cast<unsigned>((window.columns() + 31) / 32),
+                static_cast<unsigned>((window.rows() + 3) / 4));
   }
   static float intAsFloat(int bits) {
     float value;

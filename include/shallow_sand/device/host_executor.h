@@ -10,8 +10,8 @@
 
 namespace shallow_sand {
 
-/// Runs functions of a cell on the CPU, rows shared among OpenMP threads. Every cell is computed from values that no
-/// other cell of the same call writes, so the number of threads changes no bit.
+/// Runs functions of a cell on the CPU, rows shared among OpenMP threads. Every cell is computed from values
+/// that no other cell of the same call writes, so the number of threads changes no bit.
 class HostExecutor {
  public:
   template <class T>

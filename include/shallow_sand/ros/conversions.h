@@ -6,12 +6,13 @@
 
 #include <string>
 
+#include "shallow_sand/core/fields.h"
 #include "shallow_sand/core/grid.h"
-#include "shallow_sand/surface/surface.h"
 
 namespace shallow_sand {
 
-/// The surface as an organised cloud (width: columns, height: rows): x, y, z, and the depth of the sand as intensity. [m]
+/// The surface as an organised cloud (width: columns, height: rows): x, y, z, and the depth of the sand as
+/// intensity. [m]
 sensor_msgs::PointCloud2 toPointCloud(const Grid& grid, const Fields& fields, const std::string& frame,
                                       const ros::Time& stamp);
 

@@ -12,8 +12,8 @@
 
 namespace shallow_sand {
 
-/// A robot's links as bodies of a simulator: geometry from its URDF, poses from tf. A link whose pose cannot be had
-/// rests where it was last seen, or stays out of the sand; the log tells of every change once.
+/// A robot's links as bodies of a simulator: geometry from its URDF, poses from tf. A link whose pose cannot
+/// be had rests where it was last seen, or stays out of the sand; the log tells of every change once.
 class RobotBodies {
  public:
   /// Computes the distance fields of all links with collision geometry; seconds, with progress in the log.
@@ -21,7 +21,8 @@ class RobotBodies {
   RobotBodies(const std::string& urdf, const NodeParameters& parameters, Simulator& simulator);
 
   /// Takes the newest poses for `simulated_time` [s].
-  void update(const tf2_ros::Buffer& buffer, const ros::Time& now, double simulated_time, Simulator& simulator);
+  void update(const tf2_ros::Buffer& buffer, const ros::Time& now, double simulated_time,
+              Simulator& simulator);
 
   std::vector<BodyStatus> status() const;
 

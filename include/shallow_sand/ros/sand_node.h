@@ -13,9 +13,11 @@ namespace shallow_sand {
 
 /// The node. Its contract:
 /// - reads NodeParameters once; a bad one ends it with exit code 2 and one line;
-/// - bodies: links of the URDF in the parameter named ~robot_description, by their tf frames; the description may come
+/// - bodies: links of the URDF in the parameter named ~robot_description, by their tf frames; the description
+/// may come
 ///   later, tf may stop: the log says what is missing and the node goes on;
-/// - runs with ROS time (`use_sim_time` too): after every frame the sand is as far as the clock. When it cannot keep up
+/// - runs with ROS time (`use_sim_time` too): after every frame the sand is as far as the clock. When it
+/// cannot keep up
 ///   it falls behind, and ~status says by how much; when time goes backwards it goes on from there;
 /// - publishes ~points, ~mesh (latched, at ~publish_rate) and ~status (latched, once a second);
 /// - at the end writes ~report and ~picture.
@@ -23,7 +25,8 @@ class SandNode {
  public:
   /// @throws SceneError
   SandNode();
-  /// Until ROS shuts down. @throws InvalidParameter if the scene cannot go on (a fixed step that breaks its bound)
+  /// Until ROS shuts down. @throws InvalidParameter if the scene cannot go on (a fixed step that breaks its
+  /// bound)
   void run();
 
  private:

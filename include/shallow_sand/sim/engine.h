@@ -24,7 +24,8 @@ class Engine {
   virtual ~Engine() = default;
 
   virtual void addBody(const DistanceField& field) = 0;
-  /// Adds a disc of sand; returns nothing, pours are numbered from 0. Lengths are relative to the corner of cell (0, 0).
+  /// Adds a disc of sand; returns nothing, pours are numbered from 0. Lengths are relative to the corner of
+  /// cell (0, 0).
   virtual void addPour(float center_x, float center_y, float radius) = 0;
 
   /// Casts the rays of these bodies.

@@ -38,7 +38,8 @@ class EngineOn : public Engine {
         sand_(start.sand),
         open_(start.open),
         bed_(uploaded(start.fields.bed)),
-        state_{uploaded(start.fields.depth), uploaded(start.fields.momentum_x), uploaded(start.fields.momentum_y)},
+        state_{uploaded(start.fields.depth), uploaded(start.fields.momentum_x),
+               uploaded(start.fields.momentum_y)},
         next_(state_.likewise()),
         left_(2 * static_cast<std::size_t>(grid_.columns + grid_.rows), 0.0) {}
 
@@ -63,7 +64,8 @@ class EngineOn : public Engine {
                    std::min(cell(center_y + pour.radius) + 1, grid_.rows)};
     std::size_t covered = 0;
     for (int j = pour.window.row_begin; j < pour.window.row_end; ++j) {
-      for (int i = pour.window.column_begin; i < pour.window.column_end; ++i) covered += pour.covers(i, j) ? 1 : 0;
+      for (int i = pour.window.column_begin; i < pour.window.column_end; ++i)
+        covered += pour.covers(i, j) ? 1 : 0;
     }
     const std::size_t cells = static_cast<std::size_t>(pour.window.columns()) * pour.window.rows();
     pours_.push_back({pour, covered, Memory<double>(cells, 0.0)});
@@ -80,7 +82,8 @@ class EngineOn : public Engine {
       views.push_back(view);
       window_ = window_.united(placed.window);
     }
-    // One more column on each side is free to take sand; cells that a body has left are cast once more, to be cleared.
+    // One more column on each side is free to take sand; cells that a body has left are cast once more, to be
+    // cleared.
     window_ = window_.grown(1, grid_);
     const Window cast = window_.united(before);
     if (cast.empty()) return;
@@ -90,9 +93,9 @@ class EngineOn : public Engine {
       view_capacity_ = views.size();
     }
     if (!views.empty()) views_.front().upload(views.data(), views.size());
-    executor_.forEachCell(cast, CastRays{views_.empty() ? nullptr : views_.front().data(),
-                                         static_cast<int>(views.size()), state_.depth.data(), bed_.data(), contact(),
-                                         grid_.columns, grid_.spacing});
+    executor_.forEachCell(
+        cast, CastRays{views_.empty() ? nullptr : views_.front().data(), static_cast<int>(views.size()),
+                       state_.depth.data(), bed_.data(), contact(), grid_.columns, grid_.spacing});
   }
 
   void displace() override {
@@ -102,16 +105,17 @@ class EngineOn : public Engine {
                           DistanceAlongColumns{contact(), state_.depth.data(), distance, grid_.columns,
                                                grid_.spacing, window_});
     executor_.forEachCell(Window::line(window_.rows()), DistanceAlongRows{distance, grid_.columns, window_});
-    executor_.forEachCell(
-        window_, DisplaceSand{contact(), distance, state_.depth.data(), state_.momentum_x.data(), state_.momentum_y.data(),
-                              next_.depth.data(), next_.momentum_x.data(), next_.momentum_y.data(), grid_.columns,
-                              grid_.spacing, window_});
+    executor_.forEachCell(window_,
+                          DisplaceSand{contact(), distance, state_.depth.data(), state_.momentum_x.data(),
+                                       state_.momentum_y.data(), next_.depth.data(), next_.momentum_x.data(),
+                                       next_.momentum_y.data(), grid_.columns, grid_.spacing, window_});
     executor_.forEachCell(window_, CopyState{writable(next_), writable(state_), grid_.columns});
   }
 
   float signalSpeed() override {
     if (window_.empty()) return sandSpeed<false>();
-    return std::max(sandSpeed<true>(), executor_.maximumOverCells(window_, ContactSpeed{contact(), grid_.columns}));
+    return std::max(sandSpeed<true>(),
+                    executor_.maximumOverCells(window_, ContactSpeed{contact(), grid_.columns}));
   }
 
   void step(float dt) override {
@@ -132,7 +136,8 @@ class EngineOn : public Engine {
   }
 
   Fields fields() const override {
-    return {downloaded(bed_), downloaded(state_.depth), downloaded(state_.momentum_x), downloaded(state_.momentum_y)};
+    return {downloaded(bed_), downloaded(state_.depth), downloaded(state_.momentum_x),
+            downloaded(state_.momentum_y)};
   }
 
   double poured() const override {
@@ -204,12 +209,14 @@ class EngineOn : public Engine {
 
   ContactFields contact() {
     Contacts& c = contacts_.front();
-    return {c.ceiling.data(), c.length.data(), c.velocity_x.data(), c.velocity_y.data(), c.velocity_z.data(), c.overlap.data()};
+    return {c.ceiling.data(),    c.length.data(),     c.velocity_x.data(),
+            c.velocity_y.data(), c.velocity_z.data(), c.overlap.data()};
   }
 
   template <bool with_bodies>
   float sandSpeed() {
-    return executor_.maximumOverCells(Window::all(grid_), SignalSpeed<with_bodies>{stepOf<with_bodies>(0.0f)});
+    return executor_.maximumOverCells(Window::all(grid_),
+                                      SignalSpeed<with_bodies>{stepOf<with_bodies>(0.0f)});
   }
 
   template <bool with_bodies>
@@ -252,7 +259,7 @@ class EngineOn : public Engine {
   Memory<double> left_;
   std::vector<PourOnBackend> pours_;
   std::vector<Memory<float>> distance_fields_;
-  std::vector<Contacts> contacts_;     // none or one: maps without bodies need none
+  std::vector<Contacts> contacts_;       // none or one: maps without bodies need none
   std::vector<Memory<BodyView>> views_;  // none or one
   std::size_t view_capacity_ = 0;
   Window window_;  // columns that bodies may touch, at the last rays

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "shallow_sand/bodies/distance_field.h"
+#include "shallow_sand/core/fields.h"
 #include "shallow_sand/core/parameters.h"
 
 namespace shallow_sand {
@@ -30,14 +31,6 @@ struct SimulatorParameters {
   void validate() const;  ///< @throws InvalidParameter
 };
 
-/// The state of the sand, on the host; one float a cell, row-major, row 0 at the smallest y.
-struct Fields {
-  std::vector<float> bed;         ///< elevation b [m]
-  std::vector<float> depth;       ///< h [m]
-  std::vector<float> momentum_x;  ///< hu [m²/s]
-  std::vector<float> momentum_y;  ///< hv [m²/s]
-};
-
 /// Where the sand went, summed in double precision. [m³]
 struct Ledger {
   double start = 0.0;
@@ -54,7 +47,8 @@ struct Progress {
   double last_step = 0.0;  ///< [s]
 };
 
-/// The one façade over the solver, its bodies and its backends. Not thread-safe; several may live in one process.
+/// The one façade over the solver, its bodies and its backends. Not thread-safe; several may live in one
+/// process.
 class Simulator {
  public:
   /// `bed` [m] and `depth` [m]: one value a cell, finite, depth not negative.
@@ -73,22 +67,23 @@ class Simulator {
 
   /// Adds a kinematic body and returns its number, counted from 0. It takes part once it has a pose.
   std::size_t addBody(const std::string& name, std::shared_ptr<const DistanceField> field);
-  /// Tells where a body is at a time [s, of this simulator]; see Motion. @throws InvalidParameter naming the body
+  /// Tells where a body is at a time [s, of this simulator]; see Motion. @throws InvalidParameter naming the
+  /// body
   void appendPose(std::size_t body, double time, const Eigen::Isometry3d& pose);
   /// @throws InvalidParameter
   void addPour(const Pour& pour);
 
-  /// Runs the sand on by `duration` [s] exactly. @throws InvalidParameter when negative, not finite, or when a fixed
-  /// step breaks its bound
+  /// Runs the sand on by `duration` [s] exactly. @throws InvalidParameter when negative, not finite, or when
+  /// a fixed step breaks its bound
   void advance(double duration);
   double time() const;  ///< [s] since construction
 
   Fields fields() const;
   Ledger ledger() const;
   const Progress& progress() const;
-  double maxSpeed() const;           ///< of the sand now [m/s]
-  std::size_t activeCells() const;   ///< cells whose sand moves now
-  double bodyOverlap() const;        ///< sand inside bodies now [m³]
+  double maxSpeed() const;          ///< of the sand now [m/s]
+  std::size_t activeCells() const;  ///< cells whose sand moves now
+  double bodyOverlap() const;       ///< sand inside bodies now [m³]
 
  private:
   class Implementation;

@@ -4,24 +4,24 @@
 
 #include "shallow_sand/core/types.h"
 
-/// The shallow sand equations (Zhu et al., "Shallow Sand Equations"), discretised on square cells; one pure function
-/// each, with the number of its equation. Only + − × / sqrt min max are used and nothing is fused, so that every
-/// backend gives the same bits. SI units.
+/// The shallow sand equations (Zhu et al., "Shallow Sand Equations"), discretised on square cells; one pure
+/// function each, with the number of its equation. Only + − × / sqrt min max are used and nothing is fused,
+/// so that every backend gives the same bits. SI units.
 namespace shallow_sand {
 
 /// What the equations need to know of the sand and its grid; computed once (see sandConstants).
 struct SandConstants {
-  float spacing;          ///< ΔL [m]
-  float gravity;          ///< |g_z| [m/s²]
-  float gravity_x;        ///< g_x [m/s²]
-  float gravity_y;        ///< g_y [m/s²]
-  float level_x;          ///< rise of a level surface from a cell to the next along x: ΔL g_x/|g_z| [m]
-  float level_y;          ///< the same along y [m]
-  float friction;         ///< μ = tan θ
-  float repose_rise;      ///< μ ΔL: rise from a cell to the next that friction can hold [m]
-  float layer_fraction;   ///< of layer(h)
-  float layer_depth;      ///< h̄ of layer(h) [m]
-  float epsilon;          ///< ε of Eq. 13 [m⁴]
+  float spacing;         ///< ΔL [m]
+  float gravity;         ///< |g_z| [m/s²]
+  float gravity_x;       ///< g_x [m/s²]
+  float gravity_y;       ///< g_y [m/s²]
+  float level_x;         ///< rise of a level surface from a cell to the next along x: ΔL g_x/|g_z| [m]
+  float level_y;         ///< the same along y [m]
+  float friction;        ///< μ = tan θ
+  float repose_rise;     ///< μ ΔL: rise from a cell to the next that friction can hold [m]
+  float layer_fraction;  ///< of layer(h)
+  float layer_depth;     ///< h̄ of layer(h) [m]
+  float epsilon;         ///< ε of Eq. 13 [m⁴]
 };
 
 /// Depth of the dilute layer where sand is h deep (Eq. 2, section 7.1): min(fraction·h, h̄). [m]
@@ -34,8 +34,8 @@ SHALLOW_SAND_HOST_DEVICE inline float waveSpeed(float h, const SandConstants& sa
   return sqrtf(sand.gravity * diluteLayer(h, sand));
 }
 
-/// Factor that turns momentum into velocity (Eq. 13): 1/h for deep sand, falling to 0 where sand is much thinner than
-/// a cell. ε is (0.1 ΔL)⁴: the paper's ΔL⁴ brakes every layer thinner than a cell. [1/m]
+/// Factor that turns momentum into velocity (Eq. 13): 1/h for deep sand, falling to 0 where sand is much
+/// thinner than a cell. ε is (0.1 ΔL)⁴: the paper's ΔL⁴ brakes every layer thinner than a cell. [1/m]
 SHALLOW_SAND_HOST_DEVICE inline float inverseDepth(float h, const SandConstants& sand) {
   const float h4 = (h * h) * (h * h);
   return 1.41421356f * h / sqrtf(h4 + maximum(h4, sand.epsilon));
@@ -62,11 +62,12 @@ struct FaceFlux {
 };
 
 /// Central-upwind flux (Eq. 11, 12) between the sand at the left and at the right of a face.
-/// Depths are reconstructed above the higher bed (hydrostatic reconstruction), elevations measured from a level surface,
-/// which in tilted gravity rises by `level_rise` from left to right; diffusion of mass acts only on the part of the
-/// surface's rise that friction cannot hold; and the flux of hu is hu², where the paper prints hu²/2.
-SHALLOW_SAND_HOST_DEVICE inline FaceFlux faceFlux(const FaceSide& left, const FaceSide& right, float level_rise,
-                                                  const SandConstants& sand) {
+/// Depths are reconstructed above the higher bed (hydrostatic reconstruction), elevations measured from a
+/// level surface, which in tilted gravity rises by `level_rise` from left to right; diffusion of mass acts
+/// only on the part of the surface's rise that friction cannot hold; and the flux of hu is hu², where the
+/// paper prints hu²/2.
+SHALLOW_SAND_HOST_DEVICE inline FaceFlux faceFlux(const FaceSide& left, const FaceSide& right,
+                                                  float level_rise, const SandConstants& sand) {
   const float b_left = left.b + 0.5f * level_rise;
   const float b_right = right.b - 0.5f * level_rise;
   const float bed = maximum(b_left, b_right);
@@ -86,28 +87,30 @@ SHALLOW_SAND_HOST_DEVICE inline FaceFlux faceFlux(const FaceSide& left, const Fa
   FaceFlux flux;
   flux.mass = ((a_plus * q_left - a_minus * q_right) + diffusion * rise) * inverse_span;
   flux.momentum =
-      ((a_plus * (q_left * left.u) - a_minus * (q_right * right.u)) + diffusion * (q_right - q_left)) * inverse_span;
+      ((a_plus * (q_left * left.u) - a_minus * (q_right * right.u)) + diffusion * (q_right - q_left)) *
+      inverse_span;
   flux.shear = ((a_plus * (q_left * left.v) - a_minus * (q_right * right.v)) +
                 diffusion * (h_right * right.v - h_left * left.v)) *
                inverse_span;
   return flux;
 }
 
-/// Keeps a mass flux from draining a cell, or from filling the room under a body, in one step: a face may take no more
-/// than a quarter of either. `rate` is ΔL/Δt. [m²/s]
-SHALLOW_SAND_HOST_DEVICE inline float limitMassFlux(float mass, float holds_left, float holds_right, float rate) {
+/// Keeps a mass flux from draining a cell, or from filling the room under a body, in one step: a face may
+/// take no more than a quarter of either. `rate` is ΔL/Δt. [m²/s]
+SHALLOW_SAND_HOST_DEVICE inline float limitMassFlux(float mass, float holds_left, float holds_right,
+                                                    float rate) {
   constexpr float kQuarter = 0.24999f;  // four faces together stay under the whole, whatever is rounded
   return minimum(maximum(mass, -(kQuarter * rate) * holds_right), (kQuarter * rate) * holds_left);
 }
 
-/// Whether a column is full up to the body above it; less room than a hundredth of a cell is none, so that roundings
-/// of a moving body's underside open no gaps.
+/// Whether a column is full up to the body above it; less room than a hundredth of a cell is none, so that
+/// roundings of a moving body's underside open no gaps.
 SHALLOW_SAND_HOST_DEVICE inline bool isFull(float h, float ceiling, float spacing) {
   return h + 0.01f * spacing >= ceiling;
 }
 
-/// Surface of a neighbour as the pressure sees it (Eq. 17): a dry neighbour whose bed stands above our surface is level
-/// with us. [m]
+/// Surface of a neighbour as the pressure sees it (Eq. 17): a dry neighbour whose bed stands above our
+/// surface is level with us. [m]
 SHALLOW_SAND_HOST_DEVICE inline float pressureSurface(float neighbour_h, float neighbour_b, float own_surface,
                                                       float level_rise) {
   const float surface = neighbour_h + neighbour_b;
@@ -121,8 +124,9 @@ struct Momentum {
 };
 
 /// Friction (Eq. 18, 19): takes as much of the momentum as it can within Δt, all of it if it can.
-SHALLOW_SAND_HOST_DEVICE inline Momentum applyFriction(Momentum q, float layer, float dt, const SandConstants& sand) {
-  const float size = sqrtf(q.x * q.x + q.y * q.y);              // e₁
+SHALLOW_SAND_HOST_DEVICE inline Momentum applyFriction(Momentum q, float layer, float dt,
+                                                       const SandConstants& sand) {
+  const float size = sqrtf(q.x * q.x + q.y * q.y);                // e₁
   const float reach = dt * sand.friction * sand.gravity * layer;  // e₂
   const float rest = size <= reach ? 0.0f : 1.0f - reach / maximum(size, 1e-30f);
   return {q.x * rest, q.y * rest};

@@ -4,7 +4,8 @@
 
 namespace shallow_sand {
 
-/// Lets sand fall on the cells of a disc, and counts what each cell really took: its float rounds every addition.
+/// Lets sand fall on the cells of a disc, and counts what each cell really took: its float rounds every
+/// addition.
 struct PourSand {
   float* depth;
   double* poured;  ///< depth taken so far, one for each cell of the window, row-major [m]

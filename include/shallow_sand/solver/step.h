@@ -65,9 +65,9 @@ struct CellUpdate {
   Momentum q;
 };
 
-/// A step (Eq. 8–10) as pure functions of cells and faces; all read the state at time t only. A backend may compute every
-/// face twice or keep it: the bits are the same.
-/// `with_bodies` is false where no body is near the sand; `in.ceiling` is read only where it is true.
+/// A step (Eq. 8–10) as pure functions of cells and faces; all read the state at time t only. A backend may
+/// compute every face twice or keep it: the bits are the same. `with_bodies` is false where no body is near
+/// the sand; `in.ceiling` is read only where it is true.
 template <bool with_bodies>
 struct Step {
   SandFields in;
@@ -78,7 +78,9 @@ struct Step {
   float dt;    ///< Δt [s]
   float rate;  ///< ΔL/Δt [m/s]
 
-  SHALLOW_SAND_HOST_DEVICE long long index(int i, int j) const { return static_cast<long long>(j) * columns + i; }
+  SHALLOW_SAND_HOST_DEVICE long long index(int i, int j) const {
+    return static_cast<long long>(j) * columns + i;
+  }
 
   SHALLOW_SAND_HOST_DEVICE Cell load(long long at) const {
     Cell cell;
@@ -103,8 +105,8 @@ struct Step {
     return cell;
   }
 
-  /// What stands beyond an edge: sand as deep and as fast, on a bed that goes on as it came from the next cell inwards;
-  /// or a wall, before which the bed rises like a level surface does in tilted gravity.
+  /// What stands beyond an edge: sand as deep and as fast, on a bed that goes on as it came from the next
+  /// cell inwards; or a wall, before which the bed rises like a level surface does in tilted gravity.
   SHALLOW_SAND_HOST_DEVICE static Cell beyond(Cell own, float inner_bed, float level_rise, bool is_open) {
     own.b = is_open ? own.b + (own.b - inner_bed) : own.b + level_rise;
     own.closed = !is_open;
@@ -126,19 +128,22 @@ struct Step {
   SHALLOW_SAND_HOST_DEVICE Neighbours neighbours(const Cell& own, int i, int j) const {
     const long long at = index(i, j);
     return {i == 0 ? beyondWest(own, j) : load(at - 1), i == columns - 1 ? beyondEast(own, j) : load(at + 1),
-            j == 0 ? beyondSouth(own, i) : load(at - columns), j == rows - 1 ? beyondNorth(own, i) : load(at + columns)};
+            j == 0 ? beyondSouth(own, i) : load(at - columns),
+            j == rows - 1 ? beyondNorth(own, i) : load(at + columns)};
   }
 
-  /// Whether a cell is a wall to a neighbour: closed, or under a body whose underside lies lower than the neighbour's
-  /// surface, so that the sand that could flow meets the body's side. A gap under a body lets sand in only from below.
+  /// Whether a cell is a wall to a neighbour: closed, or under a body whose underside lies lower than the
+  /// neighbour's surface, so that the sand that could flow meets the body's side. A gap under a body lets
+  /// sand in only from below.
   SHALLOW_SAND_HOST_DEVICE static bool isWall(const Cell& cell, const Cell& neighbour) {
     return cell.closed || (with_bodies && neighbour.h + neighbour.b > (cell.h + cell.b) + cell.room);
   }
 
-  /// Flux between two sides of a face that may each be a wall: there the other side is mirrored, and nothing crosses.
+  /// Flux between two sides of a face that may each be a wall: there the other side is mirrored, and nothing
+  /// crosses.
   template <bool may_be_closed>
-  SHALLOW_SAND_HOST_DEVICE FaceFlux face(FaceSide left, FaceSide right, const Cell& left_cell, const Cell& right_cell,
-                                         float level_rise) const {
+  SHALLOW_SAND_HOST_DEVICE FaceFlux face(FaceSide left, FaceSide right, const Cell& left_cell,
+                                         const Cell& right_cell, float level_rise) const {
     const bool wall_left = may_be_closed && isWall(left_cell, right_cell);
     const bool wall_right = may_be_closed && isWall(right_cell, left_cell);
     if (may_be_closed) {
@@ -154,8 +159,8 @@ struct Step {
       right.b = wall_right ? own_left.b + level_rise : own_right.b;
     }
     FaceFlux flux = faceFlux(left, right, level_rise, sand);
-    flux.mass = limitMassFlux(flux.mass, minimum(left_cell.h, right_cell.room), minimum(right_cell.h, left_cell.room),
-                              rate);
+    flux.mass = limitMassFlux(flux.mass, minimum(left_cell.h, right_cell.room),
+                              minimum(right_cell.h, left_cell.room), rate);
     if (may_be_closed) flux.mass = wall_left || wall_right ? 0.0f : flux.mass;
     return flux;
   }
@@ -167,8 +172,8 @@ struct Step {
   }
   template <bool may_be_closed>
   SHALLOW_SAND_HOST_DEVICE FaceFlux faceY(const Cell& south, const Cell& north) const {
-    return face<may_be_closed>({south.h, south.v, south.u, south.b}, {north.h, north.v, north.u, north.b}, south,
-                               north, sand.level_y);
+    return face<may_be_closed>({south.h, south.v, south.u, south.b}, {north.h, north.v, north.u, north.b},
+                               south, north, sand.level_y);
   }
 
   /// Faces at the edges of the grid; through an open edge sand only leaves.
@@ -208,9 +213,10 @@ struct Step {
     return wall ? own_surface + level_rise : surface;
   }
 
-  /// Advection (Eq. 8), pressure (Eq. 9, 17) and friction (Eq. 10, 19). A closed cell keeps its depth and loses its
-  /// momentum.
-  SHALLOW_SAND_HOST_DEVICE CellUpdate update(const Cell& own, const Neighbours& n, const CellFluxes& f) const {
+  /// Advection (Eq. 8), pressure (Eq. 9, 17) and friction (Eq. 10, 19). A closed cell keeps its depth and
+  /// loses its momentum.
+  SHALLOW_SAND_HOST_DEVICE CellUpdate update(const Cell& own, const Neighbours& n,
+                                             const CellFluxes& f) const {
     const float per_length = dt / sand.spacing;
     const float h = own.h - per_length * ((f.east.mass - f.west.mass) + (f.north.mass - f.south.mass));
     Momentum q;
@@ -253,8 +259,9 @@ void stepGrid(Executor& executor, const Step<with_bodies>& step, const SandField
   executor.forEachCell(Window{0, 0, step.columns, step.rows}, StepCell<with_bodies>{step, out});
 }
 
-/// Adds to `left`, one double for each cell of the perimeter, the depth that leaves it through open edges in a step.
-/// Calls (0, k): k counts the cells of the southern row, the northern row, the western and the eastern column.
+/// Adds to `left`, one double for each cell of the perimeter, the depth that leaves it through open edges in
+/// a step. Calls (0, k): k counts the cells of the southern row, the northern row, the western and the
+/// eastern column.
 template <bool with_bodies>
 struct CountOutflow {
   Step<with_bodies> step;

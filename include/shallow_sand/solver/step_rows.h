@@ -7,14 +7,20 @@
 
 namespace shallow_sand {
 
-/// The step of a CPU: walks up the rows of a band, keeps each face for the two cells that share it, and lays values out
-/// so that the compiler computes several cells at once. Calls the same functions as StepCell.
+/// The step of a CPU: walks up the rows of a band, keeps each face for the two cells that share it, and lays
+/// values out so that the compiler computes several cells at once. Calls the same functions as StepCell.
 template <bool with_bodies>
 class RowWalker {
  public:
   RowWalker(const Step<with_bodies>& step, const SandFieldsOut& out)
-      : step_(step), out_(out), south_(step.columns), own_(step.columns), north_(step.columns),
-        flux_south_(step.columns), flux_north_(step.columns), flux_x_(step.columns + 1) {}
+      : step_(step),
+        out_(out),
+        south_(step.columns),
+        own_(step.columns),
+        north_(step.columns),
+        flux_south_(step.columns),
+        flux_north_(step.columns),
+        flux_x_(step.columns + 1) {}
 
   /// Steps the rows [begin, end).
   void walk(int begin, int end) {
@@ -42,14 +48,16 @@ class RowWalker {
   }
 
  private:
-  // Rows hand out plain pointers: a loop that copies them, and the step, to the stack is one that compilers vectorise.
+  // Rows hand out plain pointers: a loop that copies them, and the step, to the stack is one that compilers
+  // vectorise.
   struct CellRow {
     explicit CellRow(int n) : columns(n), values(7 * static_cast<std::size_t>(n)), walls(n) {}
     struct View {
       float *h, *hu, *hv, *u, *v, *b, *room;
       int* closed;
       Cell get(int i) const {
-        if (!with_bodies) return {h[i], hu[i], hv[i], u[i], v[i], b[i], std::numeric_limits<float>::infinity(), false};
+        if (!with_bodies)
+          return {h[i], hu[i], hv[i], u[i], v[i], b[i], std::numeric_limits<float>::infinity(), false};
         return {h[i], hu[i], hv[i], u[i], v[i], b[i], room[i], closed[i] != 0};
       }
       void set(int i, const Cell& cell) const {
