@@ -138,6 +138,15 @@ struct DisplaceSand {
     return contact.length[at] > 0.0f && h > 0.0f ? contact.length[at] * contact.velocity_z[at] / h : 0.0f;
   }
 
+  /// Momentum of sand beside a body that moves up or down (Eq. 24). The paper adds ΔL/2·Δw̃ in every step, so
+  /// that it grows with their number; here it is what the momentum is brought to. Sand thinner than half a
+  /// cell is pushed no faster than the body moves.
+  SHALLOW_SAND_HOST_DEVICE float pushed(float momentum, float h, float difference) const {
+    const float target = minimum(0.5f * spacing, h) * difference;
+    if (target > 0.0f) return maximum(momentum, target);
+    return target < 0.0f ? minimum(momentum, target) : momentum;
+  }
+
   SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {
     const long long at = index(i, j);
     const Column own = column(i, j);
@@ -159,9 +168,9 @@ struct DisplaceSand {
     hv += ((west.to_east ? west.carried.y : 0.0f) + (east.to_west ? east.carried.y : 0.0f)) +
           ((south.to_north ? south.carried.y : 0.0f) + (north.to_south ? north.carried.y : 0.0f));
     if (h > 0.0f && !isFull(h, contact.ceiling[at], spacing)) {
-      // Eq. 24; as Eq. 23 has it, hu takes the difference along x only, hv the one along y only.
-      hu += 0.5f * spacing * (verticalVelocity(i + 1, j) - verticalVelocity(i - 1, j));
-      hv += 0.5f * spacing * (verticalVelocity(i, j + 1) - verticalVelocity(i, j - 1));
+      // As Eq. 23 has it, hu takes the difference along x only, hv the one along y only.
+      hu = pushed(hu, h, verticalVelocity(i + 1, j) - verticalVelocity(i - 1, j));
+      hv = pushed(hv, h, verticalVelocity(i, j + 1) - verticalVelocity(i, j - 1));
     }
     depth[at] = h;
     momentum_x[at] = hu;

@@ -123,12 +123,14 @@ struct Momentum {
   float y;
 };
 
-/// Friction (Eq. 18, 19): takes as much of the momentum as it can within Δt, all of it if it can.
+/// Friction (Eq. 18, 19): takes as much of the momentum as it can within Δt, all of it if it can. It holds a
+/// thousandth more than it brakes: on a slope at the very friction angle roundings would else keep sand
+/// crawling for ever.
 SHALLOW_SAND_HOST_DEVICE inline Momentum applyFriction(Momentum q, float layer, float dt,
                                                        const SandConstants& sand) {
   const float size = sqrtf(q.x * q.x + q.y * q.y);                // e₁
   const float reach = dt * sand.friction * sand.gravity * layer;  // e₂
-  const float rest = size <= reach ? 0.0f : 1.0f - reach / maximum(size, 1e-30f);
+  const float rest = size <= 1.001f * reach ? 0.0f : 1.0f - reach / maximum(size, 1e-30f);
   return {q.x * rest, q.y * rest};
 }
 

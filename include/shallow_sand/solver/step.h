@@ -105,24 +105,26 @@ struct Step {
     return cell;
   }
 
-  /// What stands beyond an edge: sand as deep and as fast, on a bed that goes on as it came from the next
-  /// cell inwards; or a wall, before which the bed rises like a level surface does in tilted gravity.
-  SHALLOW_SAND_HOST_DEVICE static Cell beyond(Cell own, float inner_bed, float level_rise, bool is_open) {
-    own.b = is_open ? own.b + (own.b - inner_bed) : own.b + level_rise;
-    own.closed = !is_open;
+  /// What stands beyond an edge. Where it is open, sand as deep and as fast, on a bed that goes on as it came
+  /// from the next cell inwards. Where it is not, or where sand moves away from it, for nothing comes in: a
+  /// wall, before which the bed rises like a level surface does in tilted gravity.
+  SHALLOW_SAND_HOST_DEVICE static Cell beyond(Cell own, bool flows_on, float inner_bed, float level_rise) {
+    own.b = flows_on ? own.b + (own.b - inner_bed) : own.b + level_rise;
+    own.closed = !flows_on;
     return own;
   }
   SHALLOW_SAND_HOST_DEVICE Cell beyondWest(const Cell& own, int j) const {
-    return beyond(own, in.bed[index(columns > 1 ? 1 : 0, j)], -sand.level_x, open.x_min);
+    return beyond(own, open.x_min && own.u <= 0.0f, in.bed[index(columns > 1 ? 1 : 0, j)], -sand.level_x);
   }
   SHALLOW_SAND_HOST_DEVICE Cell beyondEast(const Cell& own, int j) const {
-    return beyond(own, in.bed[index(columns > 1 ? columns - 2 : 0, j)], sand.level_x, open.x_max);
+    return beyond(own, open.x_max && own.u >= 0.0f, in.bed[index(columns > 1 ? columns - 2 : 0, j)],
+                  sand.level_x);
   }
   SHALLOW_SAND_HOST_DEVICE Cell beyondSouth(const Cell& own, int i) const {
-    return beyond(own, in.bed[index(i, rows > 1 ? 1 : 0)], -sand.level_y, open.y_min);
+    return beyond(own, open.y_min && own.v <= 0.0f, in.bed[index(i, rows > 1 ? 1 : 0)], -sand.level_y);
   }
   SHALLOW_SAND_HOST_DEVICE Cell beyondNorth(const Cell& own, int i) const {
-    return beyond(own, in.bed[index(i, rows > 1 ? rows - 2 : 0)], sand.level_y, open.y_max);
+    return beyond(own, open.y_max && own.v >= 0.0f, in.bed[index(i, rows > 1 ? rows - 2 : 0)], sand.level_y);
   }
 
   SHALLOW_SAND_HOST_DEVICE Neighbours neighbours(const Cell& own, int i, int j) const {
@@ -210,7 +212,7 @@ struct Step {
     const float own_surface = own.h + own.b;
     const float surface = pressureSurface(neighbour.h, neighbour.b, own_surface, level_rise);
     const bool wall = with_bodies && (isWall(neighbour, own) || isWall(own, neighbour));
-    return wall ? own_surface + level_rise : surface;
+    return wall ? own.h + (own.b + level_rise) : surface;
   }
 
   /// Advection (Eq. 8), pressure (Eq. 9, 17) and friction (Eq. 10, 19). A closed cell keeps its depth and
