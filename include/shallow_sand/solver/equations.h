@@ -56,9 +56,10 @@ struct FaceSide {
 
 /// What crosses a face per metre and second.
 struct FaceFlux {
-  float mass;      ///< h [m²/s]
-  float momentum;  ///< momentum across the face [m³/s²]
-  float shear;     ///< momentum along the face [m³/s²]
+  float mass;            ///< h [m²/s]
+  float momentum_left;   ///< momentum across the face as the cell at its left sees it [m³/s²]
+  float momentum_right;  ///< as the cell at its right sees it; differs only where the face is a wall [m³/s²]
+  float shear;           ///< momentum along the face [m³/s²]
 };
 
 /// Central-upwind flux (Eq. 11, 12) between the sand at the left and at the right of a face.
@@ -86,13 +87,22 @@ SHALLOW_SAND_HOST_DEVICE inline FaceFlux faceFlux(const FaceSide& left, const Fa
   const float rise = shrink(h_right - h_left, sand.repose_rise);
   FaceFlux flux;
   flux.mass = ((a_plus * q_left - a_minus * q_right) + diffusion * rise) * inverse_span;
-  flux.momentum =
+  flux.momentum_left =
       ((a_plus * (q_left * left.u) - a_minus * (q_right * right.u)) + diffusion * (q_right - q_left)) *
       inverse_span;
   flux.shear = ((a_plus * (q_left * left.v) - a_minus * (q_right * right.v)) +
                 diffusion * (h_right * right.v - h_left * left.v)) *
                inverse_span;
+  flux.momentum_right = flux.momentum_left;
   return flux;
+}
+
+/// What Eq. 11 and 12 give at a wall, where the other side is this one with its velocity across the face
+/// reversed: no mass, no shear, and this momentum (the paper's words, without the reversed sign, leak).
+/// `toward` is the velocity towards the wall. [m³/s²]
+SHALLOW_SAND_HOST_DEVICE inline float wallMomentum(float h, float toward, const SandConstants& sand) {
+  const float speed = fabsf(toward) + waveSpeed(h, sand);
+  return (h * toward) * toward + speed * (h * toward);
 }
 
 /// Keeps a mass flux from draining a cell, or from filling the room under a body, in one step: a face may

@@ -141,29 +141,20 @@ struct Step {
     return cell.closed || (with_bodies && neighbour.h + neighbour.b > (cell.h + cell.b) + cell.room);
   }
 
-  /// Flux between two sides of a face that may each be a wall: there the other side is mirrored, and nothing
-  /// crosses.
+  /// Flux between two cells, each of which may be a wall to the other.
   template <bool may_be_closed>
-  SHALLOW_SAND_HOST_DEVICE FaceFlux face(FaceSide left, FaceSide right, const Cell& left_cell,
+  SHALLOW_SAND_HOST_DEVICE FaceFlux face(const FaceSide& left, const FaceSide& right, const Cell& left_cell,
                                          const Cell& right_cell, float level_rise) const {
-    const bool wall_left = may_be_closed && isWall(left_cell, right_cell);
-    const bool wall_right = may_be_closed && isWall(right_cell, left_cell);
-    if (may_be_closed) {
-      const FaceSide own_left = left;
-      const FaceSide own_right = right;
-      left.h = wall_left ? own_right.h : own_left.h;
-      left.u = wall_left ? -own_right.u : own_left.u;
-      left.v = wall_left ? own_right.v : own_left.v;
-      left.b = wall_left ? own_right.b - level_rise : own_left.b;
-      right.h = wall_right ? own_left.h : own_right.h;
-      right.u = wall_right ? -own_left.u : own_right.u;
-      right.v = wall_right ? own_left.v : own_right.v;
-      right.b = wall_right ? own_left.b + level_rise : own_right.b;
-    }
     FaceFlux flux = faceFlux(left, right, level_rise, sand);
     flux.mass = limitMassFlux(flux.mass, minimum(left_cell.h, right_cell.room),
                               minimum(right_cell.h, left_cell.room), rate);
-    if (may_be_closed) flux.mass = wall_left || wall_right ? 0.0f : flux.mass;
+    if (may_be_closed) {
+      const bool wall = isWall(left_cell, right_cell) || isWall(right_cell, left_cell);
+      flux.mass = wall ? 0.0f : flux.mass;
+      flux.shear = wall ? 0.0f : flux.shear;
+      flux.momentum_left = wall ? wallMomentum(left.h, left.u, sand) : flux.momentum_left;
+      flux.momentum_right = wall ? wallMomentum(right.h, -right.u, sand) : flux.momentum_right;
+    }
     return flux;
   }
 
@@ -222,8 +213,10 @@ struct Step {
     const float per_length = dt / sand.spacing;
     const float h = own.h - per_length * ((f.east.mass - f.west.mass) + (f.north.mass - f.south.mass));
     Momentum q;
-    q.x = own.hu - per_length * ((f.east.momentum - f.west.momentum) + (f.north.shear - f.south.shear));
-    q.y = own.hv - per_length * ((f.north.momentum - f.south.momentum) + (f.east.shear - f.west.shear));
+    q.x = own.hu -
+          per_length * ((f.east.momentum_left - f.west.momentum_right) + (f.north.shear - f.south.shear));
+    q.y = own.hv -
+          per_length * ((f.north.momentum_left - f.south.momentum_right) + (f.east.shear - f.west.shear));
 
     const float layer = diluteLayer(own.h, sand);
     const float rise_x = surfaceOf(n.east, own, sand.level_x) - surfaceOf(n.west, own, -sand.level_x);

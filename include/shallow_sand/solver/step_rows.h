@@ -81,19 +81,20 @@ class RowWalker {
     std::vector<int> walls;
   };
   struct FluxRow {
-    explicit FluxRow(int n) : columns(n), values(3 * static_cast<std::size_t>(n)) {}
+    explicit FluxRow(int n) : columns(n), values(4 * static_cast<std::size_t>(n)) {}
     struct View {
-      float *mass, *momentum, *shear;
-      FaceFlux get(int i) const { return {mass[i], momentum[i], shear[i]}; }
+      float *mass, *momentum_left, *momentum_right, *shear;
+      FaceFlux get(int i) const { return {mass[i], momentum_left[i], momentum_right[i], shear[i]}; }
       void set(int i, const FaceFlux& flux) const {
         mass[i] = flux.mass;
-        momentum[i] = flux.momentum;
+        momentum_left[i] = flux.momentum_left;
+        momentum_right[i] = flux.momentum_right;
         shear[i] = flux.shear;
       }
     };
     View view() {
       float* p = values.data();
-      return {p, p + columns, p + 2 * columns};
+      return {p, p + columns, p + 2 * columns, p + 3 * columns};
     }
     int columns;
     std::vector<float> values;
