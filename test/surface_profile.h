@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -42,6 +44,7 @@ inline double flankAngle(const Grid& grid, const Fields& fields, const Eigen::Ve
     sum_rr += r * r;
     sum_rz += r * z;
   }
+  EXPECT_GT(count, 2.0) << "too few samples for a slope";
   return std::atan(-(count * sum_rz - sum_r * sum_z) / (count * sum_rr - sum_r * sum_r));
 }
 

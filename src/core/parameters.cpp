@@ -25,6 +25,11 @@ void requireFinite(const std::string& key, double value, const std::string& unit
   if (!std::isfinite(value)) throw InvalidParameter(key, text(value), "a finite number of " + unit);
 }
 
+void requireStep(const std::string& key, double value) {
+  if (value >= 1e-6 && std::isfinite(value)) return;
+  throw InvalidParameter(key, text(value), "a finite number of seconds, at least 1e-6");
+}
+
 int cellsAlong(const std::string& key, double size, double spacing) {
   const double count = std::round(size / spacing);
   if (count < 1.0) {
@@ -91,8 +96,8 @@ void SolverParameters::validate() const {
   if (!(courant > 0.0 && courant < 1.0)) {
     throw InvalidParameter("solver.courant", text(courant), "a number between 0 and 1");
   }
-  requirePositive("solver.max_step", max_step, "seconds");
-  if (fixed_step) requirePositive("solver.fixed_step", *fixed_step, "seconds");
+  requireStep("solver.max_step", max_step);
+  if (fixed_step) requireStep("solver.fixed_step", *fixed_step);
 }
 
 void Pour::validate() const {

@@ -2,7 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <cmath>
+#include <sstream>
 
 namespace shallow_sand {
 
@@ -44,10 +44,14 @@ void take(YAML::Node& parameters, const std::string& source, const std::string& 
   parameters.remove(key);
 }
 
-void takePositive(YAML::Node& parameters, const std::string& source, const std::string& key,
-                  const std::string& expected, double& value) {
+/// The bounds keep periods within what ros::Duration can hold.
+void takeBetween(YAML::Node& parameters, const std::string& source, const std::string& key, double low,
+                 double high, const std::string& unit, double& value) {
+  std::ostringstream expected_text;
+  expected_text << "a number of " << unit << " from " << low << " to " << high;
+  const std::string expected = expected_text.str();
   take(parameters, source, key, expected, value);
-  if (value > 0.0 && std::isfinite(value)) return;
+  if (value >= low && value <= high) return;
   throw SceneError(source + ": " + key + ": " + std::to_string(value) + "; expected " + expected);
 }
 
@@ -62,14 +66,13 @@ NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
     yaml = toYaml(all);
   }
   NodeParameters parameters;
-  const std::string text = "a text";
   take(yaml, source, "robot_description", "the name of a parameter", parameters.robot_description);
-  take(yaml, source, "tf_prefix", text, parameters.tf_prefix);
+  take(yaml, source, "tf_prefix", "a text", parameters.tf_prefix);
   take(yaml, source, "report", "the path of a file", parameters.report);
   take(yaml, source, "picture", "the path of a file", parameters.picture);
-  takePositive(yaml, source, "frame_rate", "a positive number of hertz", parameters.frame_rate);
-  takePositive(yaml, source, "publish_rate", "a positive number of hertz", parameters.publish_rate);
-  takePositive(yaml, source, "tf_timeout", "a positive number of seconds", parameters.tf_timeout);
+  takeBetween(yaml, source, "frame_rate", 0.01, 1e4, "hertz", parameters.frame_rate);
+  takeBetween(yaml, source, "publish_rate", 0.01, 1e4, "hertz", parameters.publish_rate);
+  takeBetween(yaml, source, "tf_timeout", 0.001, 1e6, "seconds", parameters.tf_timeout);
   std::string sand_frame;
   take(yaml, source, "sand_frame", "the name of a tf frame", sand_frame);
   parameters.scene = readScene(yaml, source);

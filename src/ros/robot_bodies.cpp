@@ -3,7 +3,6 @@
 #include <ros/console.h>
 #include <tf2_eigen/tf2_eigen.h>
 
-#include "shallow_sand/bodies/robot_links.h"
 #include "shallow_sand/scene/simulation.h"
 
 namespace shallow_sand {
@@ -16,21 +15,35 @@ RobotBodies::RobotBodies(const std::string& urdf, const NodeParameters& paramete
   for (const LinkGeometry& geometry : robot.links) {
     ROS_INFO_STREAM("robot " << robot.robot << ": distance field of link " << geometry.link << " (" << ++done
                              << " of " << robot.links.size() << ")");
-    const double spacing = distanceSpacing(geometry.mesh, simulator.grid().spacing);
-    Link link;
-    link.name = geometry.link;
-    link.frame = parameters.tf_prefix + geometry.link;
-    link.body = simulator.addBody(
-        geometry.link, std::make_shared<const DistanceField>(computeDistanceField(geometry.mesh, spacing)));
-    link.status.name = geometry.link;
-    link.status.state = BodyStatus::WAITING;
-    links_.push_back(link);
+    try {
+      addLink(geometry, parameters.tf_prefix, simulator);
+    } catch (const InvalidParameter& problem) {
+      ROS_ERROR_STREAM("robot " << robot.robot << ", link " << geometry.link
+                                << " is left out: " << problem.what());
+    }
   }
   if (links_.empty()) {
     ROS_ERROR_STREAM("robot " << robot.robot
                               << " has no link with collision geometry that can be read; it leaves no "
                               << "trace in the sand");
   }
+}
+
+void RobotBodies::addLink(const LinkGeometry& geometry, const std::string& tf_prefix, Simulator& simulator) {
+  const double spacing = distanceSpacing(geometry.mesh, simulator.grid().spacing);
+  auto field = std::make_shared<const DistanceField>(computeDistanceField(geometry.mesh, spacing));
+  Link link;
+  link.name = geometry.link;
+  link.frame = tf_prefix + geometry.link;
+  link.body = simulator.addBody(geometry.link, std::move(field));
+  link.status.name = geometry.link;
+  link.status.state = BodyStatus::WAITING;
+  links_.push_back(link);
+}
+
+void RobotBodies::restartClock() {
+  since_ = ros::Time();
+  for (Link& link : links_) link.stamp = ros::Time();
 }
 
 void RobotBodies::update(const tf2_ros::Buffer& buffer, const ros::Time& now, double simulated_time,
@@ -51,8 +64,8 @@ void RobotBodies::updateLink(Link& link, const tf2_ros::Buffer& buffer, const ro
       report(link, BodyStatus::STALE, "its newest pose is " + std::to_string(age.toSec()) + " s old");
       return;
     }
-    link.stamp = timed ? transform.header.stamp : now;
     simulator.appendPose(link.body, simulated_time, tf2::transformToEigen(transform.transform));
+    link.stamp = timed ? transform.header.stamp : now;
     report(link, BodyStatus::MOVING, "");
   } catch (const tf2::TransformException& problem) {
     // Right after the start tf has not come yet; that is no news.

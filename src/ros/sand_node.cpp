@@ -16,6 +16,9 @@ namespace {
 /// stays responsive and a paused one does not race afterwards.
 constexpr double kLongestFrame = 0.1;
 
+/// A mesh takes 240 bytes a cell, and ROS drops messages of a gigabyte.
+constexpr std::size_t kMostCellsShown = 4000000;
+
 }  // namespace
 
 SandNode::SandNode()
@@ -40,6 +43,7 @@ void SandNode::run() {
                                            << " s; the sand goes on from here");
       last_frame_ = last_surface_ = last_status_ = last_search_ = ros::Time();
       buffer_.clear();
+      if (robot_) robot_->restartClock();
     }
     if (!now.isZero()) {
       if (!robot_) findRobot(now);
@@ -57,18 +61,25 @@ void SandNode::findRobot(const ros::Time& now) {
   last_search_ = now;
   std::string urdf;
   const std::string name = node_.resolveName(parameters_.robot_description);
-  std::string problem =
-      "parameter " + name + " is not set; expected the URDF of a robot, as robot_state_publisher has it";
-  if (node_.getParam(name, urdf)) {
-    try {
-      robot_.emplace(urdf, parameters_, simulator_);
-      return;
-    } catch (const InvalidParameter& error) {
-      problem = "parameter " + name + ": " + error.what();
-    }
+  if (!node_.getParam(name, urdf)) {
+    describe("parameter " + name +
+             " is not set; expected the URDF of a robot, as robot_state_publisher has it");
+    return;
   }
-  if (!described_problem_) ROS_ERROR_STREAM(problem << "; no robot digs until it is there");
-  described_problem_ = true;
+  if (urdf == refused_description_) return;
+  try {
+    robot_.emplace(urdf, parameters_, simulator_);
+    // Computing the distance fields took its time; the sand does not make up for it.
+    last_frame_ = ros::Time();
+  } catch (const InvalidParameter& error) {
+    refused_description_ = urdf;
+    describe("parameter " + name + ": " + error.what());
+  }
+}
+
+void SandNode::describe(const std::string& problem) {
+  if (problem != described_problem_) ROS_ERROR_STREAM(problem << "; no robot digs until it is there");
+  described_problem_ = problem;
 }
 
 void SandNode::advance(const ros::Time& now) {
@@ -84,6 +95,13 @@ void SandNode::advance(const ros::Time& now) {
 
 void SandNode::publishSurface(const ros::Time& now) {
   const std::string& frame = parameters_.scene.parameters.grid.frame;
+  if (simulator_.grid().cells() > kMostCellsShown) {
+    ROS_WARN_STREAM_ONCE(simulator_.grid().cells()
+                         << " cells are more than a message can hold; ~points and ~mesh stay "
+                         << "silent above " << kMostCellsShown);
+    last_surface_ = now;
+    return;
+  }
   const Fields fields = simulator_.fields();
   points_.publish(toPointCloud(simulator_.grid(), fields, frame, now));
   // A mesh takes forty bytes a corner: made only when somebody looks, or once, so that whoever comes later

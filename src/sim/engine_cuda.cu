@@ -11,7 +11,11 @@ std::string cudaUnavailable() {
   int devices = 0;
   const cudaError_t status = cudaGetDeviceCount(&devices);
   if (status != cudaSuccess) return cudaGetErrorString(status);
-  return devices > 0 ? "" : "no CUDA-capable device is detected";
+  if (devices == 0) return "no CUDA-capable device is detected";
+  // A GPU older than those that the kernels were compiled for is found out here, not at the first launch.
+  cudaFuncAttributes attributes{};
+  const cudaError_t kernel = cudaFuncGetAttributes(&attributes, forEachCellKernel<StepCell<false>>);
+  return kernel == cudaSuccess ? "" : cudaGetErrorString(kernel);
 }
 
 std::string cudaDeviceName() {

@@ -85,7 +85,9 @@ void SimulatorParameters::validate() const {
   validateGravity(gravity);
   material.validate();
   solver.validate();
-  if (threads < 0) throw InvalidParameter("threads", std::to_string(threads), "0 (all) or a positive number");
+  if (threads < 0 || threads > 4096) {
+    throw InvalidParameter("threads", std::to_string(threads), "0 (all) or a number up to 4096");
+  }
 }
 
 double Ledger::error() const {
@@ -144,13 +146,14 @@ class Simulator::Implementation {
   }
 
   void appendPose(std::size_t body, double time, const Eigen::Isometry3d& pose) {
-    Body& b = bodies_.at(body);
+    Body& moved = bodies_.at(body);
+    placed_anew_ = placed_anew_ || moved.motion.empty();
     try {
-      b.motion.append(time, pose);
+      moved.motion.append(time, pose);
     } catch (const InvalidParameter& problem) {
-      throw InvalidParameter("body " + b.name, problem.what(), "a valid pose");
+      throw InvalidParameter("body " + moved.name, problem.what(), "a valid pose");
     }
-    b.motion.forgetBefore(time_);
+    moved.motion.forgetBefore(time_);
   }
 
   void advance(double duration) {
@@ -158,12 +161,15 @@ class Simulator::Implementation {
       throw InvalidParameter("duration", std::to_string(duration), "seconds, finite and not negative");
     }
     const double end = time_ + duration;
-    clearBodies();
+    if (placed_anew_) clearBodies();
+    placed_anew_ = false;
     while (time_ < end) substep(end);
   }
 
   void substep(double end) {
-    const double step = std::min(stepBound(), end - time_);
+    // No sliver of a step at the end, which roundings of the time would leave.
+    const double bound = stepBound();
+    const double step = end - time_ <= bound * (1.0 + 1e-9) ? end - time_ : bound;
     const double next = step < end - time_ ? time_ + step : end;
     engine_->step(static_cast<float>(step));
     for (std::size_t k = 0; k < pours_.size(); ++k) {
@@ -271,6 +277,7 @@ class Simulator::Implementation {
   double start_volume_ = 0.0;
   double time_ = 0.0;
   Progress progress_;
+  bool placed_anew_ = false;  // a body has its first pose, and sand may be where it is
 };
 
 Simulator::Simulator(const SimulatorParameters& parameters, std::vector<float> bed, std::vector<float> depth)

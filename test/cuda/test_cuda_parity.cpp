@@ -118,6 +118,7 @@ TEST_F(CudaParity, SandAlone) {
     SCOPED_TRACE(std::to_string(size.columns) + " x " + std::to_string(size.rows));
     compare(randomScene(random, size.columns, size.rows, 0, 0), steps);
   }
+  EXPECT_GT(steps, 0u);
   RecordProperty("steps", std::to_string(steps));
 }
 
@@ -128,6 +129,7 @@ TEST_F(CudaParity, Pours) {
     SCOPED_TRACE(std::to_string(size.columns) + " x " + std::to_string(size.rows));
     compare(randomScene(random, size.columns, size.rows, 2, 0), steps);
   }
+  EXPECT_GT(steps, 0u);
   RecordProperty("steps", std::to_string(steps));
 }
 
@@ -138,6 +140,7 @@ TEST_F(CudaParity, MovingBodies) {
     SCOPED_TRACE(std::to_string(size.columns) + " x " + std::to_string(size.rows));
     compare(randomScene(random, size.columns, size.rows, 1, 1 + static_cast<int>(random() % 3)), steps);
   }
+  EXPECT_GT(steps, 0u);
   RecordProperty("steps", std::to_string(steps));
 }
 

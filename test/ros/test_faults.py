@@ -91,8 +91,9 @@ class Faults(unittest.TestCase):
     def test_broken_robot_description(self):
         rospy.set_param("/robot_description", "<robot name='broken'>")
         with RunningNode("broken_robot", SCENE) as node:
-            node.wait_for_error("/robot_description")
+            self.assertEqual(len(node.wait_for_error("/robot_description")), 1)
             self.assert_alive(node)
+            self.assertEqual(len(node.wait_for_error("/robot_description")), 1, "said more than once")
 
     def expect_refusal(self, name, changes, *words):
         with RunningNode(name, dict(SCENE, **changes)) as node:
@@ -105,7 +106,7 @@ class Faults(unittest.TestCase):
     def test_bad_parameters_end_the_node(self):
         self.expect_refusal("angle", {"material": {"friction_angle": 95.0}}, "material.friction_angle", "95")
         self.expect_refusal("typo", {"sands": []}, "sands", "sand")
-        self.expect_refusal("rate", {"frame_rate": -1.0}, "frame_rate", "positive")
+        self.expect_refusal("rate", {"frame_rate": -1.0}, "frame_rate", "hertz")
 
 
 if __name__ == "__main__":

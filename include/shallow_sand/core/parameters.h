@@ -52,7 +52,7 @@ struct Edges {
 /// How time is cut into steps. Scene key `solver`.
 struct SolverParameters {
   double courant = 0.45;   ///< C of Eq. 14 and 34; 0 < C < 1
-  double max_step = 0.01;  ///< no step is longer [s]
+  double max_step = 0.01;  ///< no step is longer; at least 1e-6 [s]
   std::optional<double>
       fixed_step;  ///< this step instead [s]; a run in which it breaks the bound of `courant` ends
 

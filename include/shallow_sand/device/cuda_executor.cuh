@@ -57,13 +57,11 @@ class CudaExecutor {
     std::size_t size() const { return count_; }
     T* data() { return data_; }
     const T* data() const { return data_; }
-    void upload(const T* source, std::size_t count, std::size_t offset = 0) {
-      checkCuda(cudaMemcpy(data_ + offset, source, count * sizeof(T), cudaMemcpyHostToDevice),
-                "copy to device");
+    void upload(const T* source, std::size_t count) {
+      checkCuda(cudaMemcpy(data_, source, count * sizeof(T), cudaMemcpyHostToDevice), "copy to device");
     }
-    void download(T* target, std::size_t count, std::size_t offset = 0) const {
-      checkCuda(cudaMemcpy(target, data_ + offset, count * sizeof(T), cudaMemcpyDeviceToHost),
-                "copy to host");
+    void download(T* target, std::size_t count) const {
+      checkCuda(cudaMemcpy(target, data_, count * sizeof(T), cudaMemcpyDeviceToHost), "copy to host");
     }
 
    private:

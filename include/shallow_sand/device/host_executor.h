@@ -21,11 +21,9 @@ class HostExecutor {
     std::size_t size() const { return values_.size(); }
     T* data() { return values_.data(); }
     const T* data() const { return values_.data(); }
-    void upload(const T* source, std::size_t count, std::size_t offset = 0) {
-      std::copy(source, source + count, values_.begin() + static_cast<std::ptrdiff_t>(offset));
-    }
-    void download(T* target, std::size_t count, std::size_t offset = 0) const {
-      const auto begin = values_.begin() + static_cast<std::ptrdiff_t>(offset);
+    void upload(const T* source, std::size_t count) { std::copy(source, source + count, values_.begin()); }
+    void download(T* target, std::size_t count) const {
+      const auto begin = values_.begin();
       std::copy(begin, begin + static_cast<std::ptrdiff_t>(count), target);
     }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "shallow_sand/BodyStatus.h"
+#include "shallow_sand/bodies/robot_links.h"
 #include "shallow_sand/ros/node_parameters.h"
 #include "shallow_sand/sim/simulator.h"
 
@@ -24,6 +25,9 @@ class RobotBodies {
   void update(const tf2_ros::Buffer& buffer, const ros::Time& now, double simulated_time,
               Simulator& simulator);
 
+  /// To be called when ROS time went backwards: what is known of the age of poses no longer holds.
+  void restartClock();
+
   std::vector<BodyStatus> status() const;
 
  private:
@@ -34,6 +38,7 @@ class RobotBodies {
     ros::Time stamp;  ///< of its newest pose; zero: none yet
     BodyStatus status;
   };
+  void addLink(const LinkGeometry& geometry, const std::string& tf_prefix, Simulator& simulator);
   void updateLink(Link& link, const tf2_ros::Buffer& buffer, const ros::Time& now, double simulated_time,
                   Simulator& simulator);
   void report(Link& link, std::uint8_t state, const std::string& problem) const;

@@ -14,11 +14,10 @@ namespace shallow_sand {
 /// The node. Its contract:
 /// - reads NodeParameters once; a bad one ends it with exit code 2 and one line;
 /// - bodies: links of the URDF in the parameter named ~robot_description, by their tf frames; the description
-/// may come
-///   later, tf may stop: the log says what is missing and the node goes on;
-/// - runs with ROS time (`use_sim_time` too): after every frame the sand is as far as the clock. When it
-/// cannot keep up
-///   it falls behind, and ~status says by how much; when time goes backwards it goes on from there;
+///   may come later, tf may stop: the log says what is missing and the node goes on;
+/// - runs with ROS time (`use_sim_time` too). What lies more than 0.1 s back at a frame is given up, and
+/// ~status
+///   says by how much the sand lags; when time goes backwards it goes on from there;
 /// - publishes ~points, ~mesh (latched, at ~publish_rate) and ~status (latched, once a second);
 /// - at the end writes ~report and ~picture.
 class SandNode {
@@ -31,6 +30,8 @@ class SandNode {
 
  private:
   void findRobot(const ros::Time& now);
+  /// Tells what keeps the robot away, once.
+  void describe(const std::string& problem);
   /// Brings the sand up to `now`.
   void advance(const ros::Time& now);
   void publishSurface(const ros::Time& now);
@@ -53,8 +54,9 @@ class SandNode {
   ros::Time last_search_;
   ros::WallTime last_status_wall_;
   double last_status_simulated_ = 0.0;
-  double busy_ = 0.0;  ///< time spent in the simulator [s]
-  bool described_problem_ = false;
+  double busy_ = 0.0;                ///< time spent in the simulator [s]
+  std::string described_problem_;    ///< told last
+  std::string refused_description_;  ///< no URDF; not to be tried again
 };
 
 }  // namespace shallow_sand

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <array>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "shallow_sand/coupling/body_view.h"

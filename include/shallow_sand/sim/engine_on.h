@@ -1,8 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "shallow_sand/coupling/displacement.h"
 #include "shallow_sand/coupling/rays.h"
