@@ -27,7 +27,7 @@ void requireFinite(const std::string& key, double value, const std::string& unit
 
 void requireStep(const std::string& key, double value) {
   if (value >= 1e-6 && std::isfinite(value)) return;
-  throw InvalidParameter(key, text(value), "a finite number of seconds, at least 1e-6");
+  throw InvalidParameter(key, text(value), "a positive, finite number of seconds, at least 1e-6");
 }
 
 int cellsAlong(const std::string& key, double size, double spacing) {

@@ -113,6 +113,14 @@ TEST(CouplingLaws, HoveringBodyLeavesMovingSandAlone) {
 /// Speed under which sand beside a body counts as settled [m/s]: a millimetre in a quarter of an hour.
 constexpr double kCrawl = 1e-6;
 
+double largestChange(const std::vector<float>& before, const std::vector<float>& after) {
+  double largest = 0.0;
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    largest = std::max(largest, std::abs(static_cast<double>(after[k]) - before[k]));
+  }
+  return largest;
+}
+
 TEST(CouplingLaws, SandSettlesAroundARestingBodyAndStays) {
   std::mt19937 random = seededGenerator();
   for (int scene = 0; scene < kScenes; ++scene) {
@@ -128,7 +136,7 @@ TEST(CouplingLaws, SandSettlesAroundARestingBodyAndStays) {
       simulator.advance(0.2);
       const Fields now = simulator.fields();
       // Single cells beside a body may keep crawling: see the limits in the README.
-      settles = simulator.maxSpeed() < kCrawl;
+      settles = simulator.maxSpeed() < kCrawl && largestChange(settled.depth, now.depth) < kCrawl;
       settled = now;
     }
     EXPECT_TRUE(settles) << "scene " << scene << ": " << simulator.activeCells()
@@ -136,10 +144,8 @@ TEST(CouplingLaws, SandSettlesAroundARestingBodyAndStays) {
     if (!settles) continue;
     simulator.advance(1.0);
     EXPECT_LT(simulator.maxSpeed(), kCrawl) << "scene " << scene;
-    const std::vector<float> later = simulator.fields().depth;
-    for (std::size_t k = 0; k < later.size(); ++k) {
-      ASSERT_NEAR(later[k], settled.depth[k], kCrawl * 1.0 + 1e-6) << "scene " << scene << ", cell " << k;
-    }
+    // Roundings of a depth of some metres are a few times 1e-7 m.
+    EXPECT_LT(largestChange(settled.depth, simulator.fields().depth), kCrawl + 1e-6) << "scene " << scene;
   }
 }
 
