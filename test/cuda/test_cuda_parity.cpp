@@ -111,38 +111,24 @@ struct Size {
 /// over.
 constexpr Size kSizes[] = {{1, 1}, {1, 7}, {33, 1}, {2, 2}, {31, 3}, {32, 4}, {33, 5}, {70, 45}};
 
-TEST_F(CudaParity, SandAlone) {
+/// Compares a random scene of every size; `most_bodies` is the largest number of bodies in one.
+void compareAllSizes(int pours, int most_bodies) {
   std::mt19937 random = seededGenerator();
   std::uint64_t steps = 0;
   for (const Size& size : kSizes) {
     SCOPED_TRACE(std::to_string(size.columns) + " x " + std::to_string(size.rows));
-    compare(randomScene(random, size.columns, size.rows, 0, 0), steps);
+    const int bodies = most_bodies > 0 ? 1 + static_cast<int>(random() % most_bodies) : 0;
+    compare(randomScene(random, size.columns, size.rows, pours, bodies), steps);
   }
   EXPECT_GT(steps, 0u);
-  RecordProperty("steps", std::to_string(steps));
+  ::testing::Test::RecordProperty("steps", std::to_string(steps));
 }
 
-TEST_F(CudaParity, Pours) {
-  std::mt19937 random = seededGenerator();
-  std::uint64_t steps = 0;
-  for (const Size& size : kSizes) {
-    SCOPED_TRACE(std::to_string(size.columns) + " x " + std::to_string(size.rows));
-    compare(randomScene(random, size.columns, size.rows, 2, 0), steps);
-  }
-  EXPECT_GT(steps, 0u);
-  RecordProperty("steps", std::to_string(steps));
-}
+TEST_F(CudaParity, SandAlone) { compareAllSizes(0, 0); }
 
-TEST_F(CudaParity, MovingBodies) {
-  std::mt19937 random = seededGenerator();
-  std::uint64_t steps = 0;
-  for (const Size& size : kSizes) {
-    SCOPED_TRACE(std::to_string(size.columns) + " x " + std::to_string(size.rows));
-    compare(randomScene(random, size.columns, size.rows, 1, 1 + static_cast<int>(random() % 3)), steps);
-  }
-  EXPECT_GT(steps, 0u);
-  RecordProperty("steps", std::to_string(steps));
-}
+TEST_F(CudaParity, Pours) { compareAllSizes(2, 0); }
+
+TEST_F(CudaParity, MovingBodies) { compareAllSizes(1, 3); }
 
 }  // namespace
 }  // namespace shallow_sand
