@@ -12,4 +12,12 @@ struct Fields {
   std::vector<float> momentum_y;  ///< hv [m²/s]
 };
 
+/// Material that varies over the map: each list is empty (then Material holds everywhere) or has one value a
+/// cell, row-major, row 0 at the smallest y, within the bounds of Material's members of these names.
+struct MaterialFields {
+  std::vector<float> friction_angle;  ///< [rad]
+  std::vector<float> layer_fraction;
+  std::vector<float> layer_depth;  ///< [m]
+};
+
 }  // namespace shallow_sand
