@@ -47,16 +47,20 @@ inline GDALDriver& gdalDriver(const char* name, const std::string& path) {
   return *driver;
 }
 
-/// Writes a field of the grid to a whole band. Memory holds the southernmost row first and images the
-/// northernmost, so it is read from its last row on, backwards. @throws std::runtime_error naming `path`
+/// Writes a field of the grid to a whole band, or reads it. Memory holds the southernmost row first and
+/// images the northernmost, so it is walked from its last row on, backwards.
+/// @throws std::runtime_error naming `path`
+inline void transferNorthUp(GDALRasterBand& band, GDALRWFlag direction, float* values, const Grid& grid,
+                            const std::string& path) {
+  const auto line = static_cast<GSpacing>(sizeof(float)) * grid.columns;
+  requireGdal(band.RasterIO(direction, 0, 0, grid.columns, grid.rows, values + grid.index(0, grid.rows - 1),
+                            grid.columns, grid.rows, GDT_Float32, sizeof(float), -line, nullptr) == CE_None,
+              path);
+}
 inline void writeNorthUp(GDALRasterBand& band, const std::vector<float>& values, const Grid& grid,
                          const std::string& path) {
-  const auto line = static_cast<GSpacing>(sizeof(float)) * grid.columns;
   // RasterIO takes a mutable buffer for both directions; writing only reads it.
-  float* north = const_cast<float*>(values.data()) + grid.index(0, grid.rows - 1);
-  requireGdal(band.RasterIO(GF_Write, 0, 0, grid.columns, grid.rows, north, grid.columns, grid.rows,
-                            GDT_Float32, sizeof(float), -line, nullptr) == CE_None,
-              path);
+  transferNorthUp(band, GF_Write, const_cast<float*>(values.data()), grid, path);
 }
 
 }  // namespace shallow_sand

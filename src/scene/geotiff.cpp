@@ -1,56 +1,39 @@
 #include "shallow_sand/scene/geotiff.h"
 
 #include <array>
-#include <cstdio>
 #include <utility>
 
 #include "gdal_support.h"
+#include "shallow_sand/scene/scene.h"
+#include "state_metadata.h"
 
 namespace shallow_sand {
 namespace {
 
 constexpr const char* kDomain = "SHALLOW_SAND";
 
-std::string exact(double value) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%a", value);
-  return text.data();
+/// The lists of a snapshot by the names of their bands. State: Snapshot, or const Snapshot.
+template <class State>
+auto fieldBands(State& state) {
+  auto& f = state.fields;
+  return std::array<std::pair<const char*, decltype(&f.bed)>, 4>{
+      {{"bed", &f.bed}, {"depth", &f.depth}, {"momentum_x", &f.momentum_x}, {"momentum_y", &f.momentum_y}}};
+}
+template <class State>
+auto contactBands(State& state) {
+  auto& c = state.contacts;
+  return std::array<std::pair<const char*, decltype(&c.ceiling)>, 4>{{{"contact_ceiling", &c.ceiling},
+                                                                      {"contact_length", &c.length},
+                                                                      {"contact_velocity_x", &c.velocity_x},
+                                                                      {"contact_velocity_y", &c.velocity_y}}};
 }
 
-std::string edgeName(Edge edge) { return edge == Edge::open ? "open" : "wall"; }
-
-void describeParameters(const SimulatorParameters& parameters, Metadata& metadata) {
-  metadata["grid.size_x"] = exact(parameters.grid.size.x());
-  metadata["grid.size_y"] = exact(parameters.grid.size.y());
-  metadata["grid.spacing"] = exact(parameters.grid.spacing);
-  metadata["grid.origin_x"] = exact(parameters.grid.origin.x());
-  metadata["grid.origin_y"] = exact(parameters.grid.origin.y());
-  metadata["grid.frame"] = parameters.grid.frame;
-  metadata["gravity.x"] = exact(parameters.gravity.x());
-  metadata["gravity.y"] = exact(parameters.gravity.y());
-  metadata["gravity.z"] = exact(parameters.gravity.z());
-  metadata["material.friction_angle_rad"] = exact(parameters.material.friction_angle);
-  metadata["material.dilute_layer.fraction"] = exact(parameters.material.layer_fraction);
-  metadata["material.dilute_layer.depth"] = exact(parameters.material.layer_depth);
-  metadata["edges.x_min"] = edgeName(parameters.edges.x_min);
-  metadata["edges.x_max"] = edgeName(parameters.edges.x_max);
-  metadata["edges.y_min"] = edgeName(parameters.edges.y_min);
-  metadata["edges.y_max"] = edgeName(parameters.edges.y_max);
-  metadata["solver.reconstruction"] =
-      parameters.solver.reconstruction == Reconstruction::minmod ? "minmod" : "constant";
-  metadata["solver.courant"] = exact(parameters.solver.courant);
-  metadata["solver.max_step"] = exact(parameters.solver.max_step);
-  if (parameters.solver.fixed_step) {
-    metadata["solver.fixed_step"] = exact(*parameters.solver.fixed_step);
-  }
-}
-
-DatasetPointer createTiff(const std::string& path, const Grid& grid) {
+DatasetPointer createTiff(const std::string& path, const Grid& grid, int bands) {
   const std::array<const char*, 6> options{"COMPRESS=DEFLATE", "PREDICTOR=3", "INTERLEAVE=BAND",
                                            "BIGTIFF=IF_SAFER", "TILED=YES",   nullptr};
-  DatasetPointer dataset(
-      gdalDriver("GTiff", path)
-          .Create(path.c_str(), grid.columns, grid.rows, 4, GDT_Float32, const_cast<char**>(options.data())));
+  DatasetPointer dataset(gdalDriver("GTiff", path)
+                             .Create(path.c_str(), grid.columns, grid.rows, bands, GDT_Float32,
+                                     const_cast<char**>(options.data())));
   requireGdal(dataset != nullptr, path);
   const double spacing = static_cast<double>(grid.spacing);
   std::array<double, 6> transform{grid.origin_x, spacing, 0.0, grid.origin_y + grid.rows * spacing,
@@ -59,46 +42,107 @@ DatasetPointer createTiff(const std::string& path, const Grid& grid) {
   return dataset;
 }
 
-}  // namespace
+/// Contacts fill a window of the grid; their bands are 0 elsewhere.
+std::vector<float> onGrid(const std::vector<float>& part, const Window& window, const Grid& grid) {
+  std::vector<float> values(grid.cells(), 0.0f);
+  auto row = part.begin();
+  for (int j = window.row_begin; j < window.row_end; ++j, row += window.columns())
+    std::copy_n(row, window.columns(), &values[grid.index(window.column_begin, j)]);
+  return values;
+}
+std::vector<float> inWindow(const std::vector<float>& values, const Window& window, const Grid& grid) {
+  std::vector<float> part;
+  for (int j = window.row_begin; j < window.row_end; ++j) {
+    const auto* row = &values[grid.index(0, j)];
+    part.insert(part.end(), row + window.column_begin, row + window.column_end);
+  }
+  return part;
+}
 
-Metadata stateMetadata(const Simulator& simulator) {
-  const Ledger ledger = simulator.ledger();
-  Metadata metadata{{"version", SHALLOW_SAND_VERSION},
-                    {"time", exact(simulator.time())},
-                    {"steps", std::to_string(simulator.progress().steps)},
-                    {"cell_updates", std::to_string(simulator.progress().cell_updates)},
-                    {"last_step", exact(simulator.progress().last_step)},
-                    {"ledger.start", exact(ledger.start)},
-                    {"ledger.poured", exact(ledger.poured)},
-                    {"ledger.left", exact(ledger.left)},
-                    {"ledger.now", exact(ledger.now)}};
-  describeParameters(simulator.parameters(), metadata);
+void requireSizes(const std::string& path, const Grid& grid, const Snapshot& state) {
+  for (const auto& band : fieldBands(state)) {
+    if (band.second->size() != grid.cells())
+      throw std::runtime_error(path + ": " + band.first + " does not hold one value for each cell");
+  }
+}
+
+Metadata metadataOf(GDALDataset& dataset) {
+  Metadata metadata;
+  for (char** item = dataset.GetMetadata(kDomain); item != nullptr && *item != nullptr; ++item) {
+    const std::string text = *item;
+    const std::size_t equals = text.find('=');
+    if (equals != std::string::npos) metadata[text.substr(0, equals)] = text.substr(equals + 1);
+  }
   return metadata;
 }
 
-void saveState(const std::string& path, const Grid& grid, const Fields& fields, const Metadata& metadata) {
-  const std::array<std::pair<const char*, const std::vector<float>*>, 4> bands{
-      {{"bed", &fields.bed},
-       {"depth", &fields.depth},
-       {"momentum_x", &fields.momentum_x},
-       {"momentum_y", &fields.momentum_y}}};
+GDALRasterBand& bandNamed(GDALDataset& dataset, const std::string& name) {
+  for (int number = 1; number <= dataset.GetRasterCount(); ++number) {
+    GDALRasterBand& band = *dataset.GetRasterBand(number);
+    if (band.GetDescription() == name) return band;
+  }
+  throw InvalidParameter("band " + name, "missing", "a state that sand_run --save wrote");
+}
+
+Snapshot readState(GDALDataset& dataset, const SimulatorParameters& parameters, const std::string& path) {
+  const Metadata metadata = metadataOf(dataset);
+  requireSameGrid(metadata, parameters);
+  const Grid grid = parameters.grid.grid();
+  if (dataset.GetRasterXSize() != grid.columns || dataset.GetRasterYSize() != grid.rows)
+    throw InvalidParameter("size", "not that of its metadata", "an image of the grid's size");
+  Snapshot state = snapshotOf(metadata, grid);
+  for (const auto& band : fieldBands(state)) {
+    band.second->resize(grid.cells());
+    transferNorthUp(bandNamed(dataset, band.first), GF_Read, band.second->data(), grid, path);
+  }
+  const Window& window = state.contacts.window;
+  if (window.empty()) return state;
+  std::vector<float> values(grid.cells());
+  for (const auto& band : contactBands(state)) {
+    transferNorthUp(bandNamed(dataset, band.first), GF_Read, values.data(), grid, path);
+    *band.second = inWindow(values, window, grid);
+  }
+  return state;
+}
+
+}  // namespace
+
+void saveState(const std::string& path, const SimulatorParameters& parameters, const Snapshot& state) {
+  const Grid grid = parameters.grid.grid();
   const QuietGdal quiet;
-  for (const auto& band : bands) {
-    if (band.second->size() != grid.cells()) {
-      throw std::runtime_error(path + ": " + band.first + " does not hold one value for each cell");
-    }
+  requireSizes(path, grid, state);
+  const Window& window = state.contacts.window;
+  DatasetPointer dataset = createTiff(path, grid, window.empty() ? 4 : 8);
+  int number = 0;
+  const auto write = [&](const char* name, const std::vector<float>& values) {
+    dataset->GetRasterBand(++number)->SetDescription(name);
+    writeNorthUp(*dataset->GetRasterBand(number), values, grid, path);
+  };
+  for (const auto& band : fieldBands(state)) write(band.first, *band.second);
+  if (!window.empty()) {
+    for (const auto& band : contactBands(state)) write(band.first, onGrid(*band.second, window, grid));
   }
-  DatasetPointer dataset = createTiff(path, grid);
-  for (std::size_t k = 0; k < bands.size(); ++k) {
-    GDALRasterBand& band = *dataset->GetRasterBand(static_cast<int>(k) + 1);
-    band.SetDescription(bands[k].first);
-    writeNorthUp(band, *bands[k].second, grid, path);
-  }
-  for (const auto& item : metadata) {
+  for (const auto& item : stateMetadata(parameters, state)) {
     requireGdal(dataset->SetMetadataItem(item.first.c_str(), item.second.c_str(), kDomain) == CE_None, path);
   }
   dataset.reset();  // writes what is still in memory
   requireGdal(CPLGetLastErrorType() < CE_Failure, path);
+}
+
+Snapshot loadState(const std::string& path, const SimulatorParameters& parameters) {
+  const QuietGdal quiet;
+  const std::array<const char*, 2> drivers{"GTiff", nullptr};
+  const DatasetPointer dataset(
+      GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data()));
+  if (dataset == nullptr)
+    throw SceneError(path + ": " + CPLGetLastErrorMsg() + "; expected a state that sand_run --save wrote");
+  try {
+    return readState(*dataset, parameters, path);
+  } catch (const InvalidParameter& problem) {
+    throw SceneError(path + ": " + problem.what());
+  } catch (const std::runtime_error& problem) {
+    throw SceneError(problem.what());
+  }
 }
 
 }  // namespace shallow_sand

@@ -25,7 +25,8 @@ struct Options {
   std::optional<double> duration;  ///< [s]
   std::optional<std::string> backend;
   std::optional<int> threads;
-  std::string save;  ///< paths; empty: not asked for
+  std::string load;  ///< paths; empty: not asked for
+  std::string save;
   std::string report;
   std::string picture;
 };
@@ -35,6 +36,8 @@ void declareOptions(CLI::App& app, Options& options) {
   app.add_option("--duration", options.duration, "Time to simulate [s], instead of the scene's");
   app.add_option("--backend", options.backend, "auto, cpu or cuda, instead of the scene's");
   app.add_option("--threads", options.threads, "Threads of the cpu backend; 0: as many as there are");
+  app.add_option("--load", options.load,
+                 "Go on from this state, which --save wrote; the scene's times count from its start");
   app.add_option("--save", options.save, "Write the state at the end to this GeoTIFF");
   app.add_option("--report", options.report, "Write the figures of the run to this JSON file");
   app.add_option("--picture", options.picture, "Write a shaded relief of the end to this PNG");
@@ -94,17 +97,17 @@ double run(Simulator& simulator, double duration) {
   const Clock::time_point begin = Clock::now();
   const double frame = frameLength(simulator.parameters().solver);
   double next_print = 1.0;
-  while (simulator.time() < duration) {
-    const double rest = duration - simulator.time();
+  // Frames end at the same times in every run, and at times that a user can write, so that one that goes on
+  // from a saved state takes the same steps.
+  const auto nearestNanosecond = [](double time) { return std::round(time * 1e9) / 1e9; };
+  for (double number = std::floor(simulator.time() / frame) + 1.0; simulator.time() < duration;
+       number += 1.0) {
+    const double end = nearestNanosecond(number * frame);
     // No sliver of a frame at the end.
-    const bool last = rest < 1.001 * frame;
-    simulator.advance(last ? rest : frame);
+    simulator.advanceTo(end > duration - 0.001 * frame ? duration : std::max(end, simulator.time()));
     if (secondsSince(begin) >= next_print) {
       printProgress(simulator, duration, secondsSince(begin));
       next_print = secondsSince(begin) + 1.0;
-    }
-    if (last) {
-      break;
     }
   }
   return secondsSince(begin);
@@ -133,7 +136,7 @@ std::vector<Outline> footprints(const Scene& scene, double time) {
 void writeResults(const Options& options, const Scene& scene, const Simulator& simulator,
                   const Report& report) {
   if (!options.save.empty()) {
-    saveState(options.save, simulator.grid(), simulator.fields(), stateMetadata(simulator));
+    saveState(options.save, simulator.parameters(), simulator.snapshot());
   }
   if (!options.report.empty()) {
     writeReport(options.report, report);
@@ -148,6 +151,15 @@ void writeResults(const Options& options, const Scene& scene, const Simulator& s
   }
 }
 
+void resume(Simulator& simulator, const std::string& path) {
+  const Snapshot state = loadState(path, simulator.parameters());
+  try {
+    simulator.restore(state);
+  } catch (const InvalidParameter& error) {
+    throw SceneError(path + ": " + error.what());
+  }
+}
+
 void runScene(const Options& options) {
   Scene scene = loadScene(options.scene);
   applyOptions(options, scene);
@@ -155,6 +167,9 @@ void runScene(const Options& options) {
   requireWritable("--report", options.report);
   requireWritable("--picture", options.picture);
   Simulator simulator = buildSimulator(scene);
+  if (!options.load.empty()) {
+    resume(simulator, options.load);
+  }
   std::printf("%s\n", simulator.backendNotice().c_str());
   const double wall = run(simulator, scene.duration);
   const Report report = makeReport(simulator, scene.name, wall);

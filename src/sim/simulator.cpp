@@ -250,7 +250,14 @@ class Simulator::Implementation {
     if (!(duration >= 0.0) || !std::isfinite(duration)) {
       throw InvalidParameter("duration", std::to_string(duration), "seconds, finite and not negative");
     }
-    const double end = time_ + duration;
+    advanceTo(time_ + duration);
+  }
+
+  void advanceTo(double end) {
+    if (!(end >= time_) || !std::isfinite(end)) {
+      throw InvalidParameter("time", std::to_string(end),
+                             "finite seconds, not before " + std::to_string(time_) + " s, which it is");
+    }
     if (placed_anew_) clearBodies();
     placed_anew_ = false;
     while (time_ < end) substep(end);
@@ -417,6 +424,7 @@ double Simulator::edit(const Edit& edit) { return implementation_->edit(edit); }
 Snapshot Simulator::snapshot() const { return implementation_->snapshot(); }
 void Simulator::restore(const Snapshot& snapshot) { implementation_->restore(snapshot); }
 void Simulator::advance(double duration) { implementation_->advance(duration); }
+void Simulator::advanceTo(double time) { implementation_->advanceTo(time); }
 double Simulator::time() const { return implementation_->time_; }
 
 Fields Simulator::fields() const { return implementation_->engine_->fields(); }

@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <fstream>
 #include <limits>
 #include <memory>
 
 #include "random_seed.h"
 #include "shallow_sand/scene/geotiff.h"
+#include "shallow_sand/scene/scene.h"
 
 namespace shallow_sand {
 namespace {
@@ -21,14 +23,20 @@ Dataset open(const std::string& path) {
   return Dataset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
 }
 
-Grid oddGrid() {
-  Grid grid;
-  grid.columns = 37;
-  grid.rows = 19;
-  grid.spacing = 0.02f;
-  grid.origin_x = -1.5;
-  grid.origin_y = 4.25;
-  return grid;
+SimulatorParameters oddParameters() {
+  SimulatorParameters parameters;
+  parameters.grid.spacing = 0.02;
+  parameters.grid.size = {37 * 0.02, 19 * 0.02};
+  parameters.grid.origin = {-1.5, 4.25};
+  parameters.backend = Backend::cpu;
+  parameters.threads = 1;
+  return parameters;
+}
+
+Snapshot stateOf(Fields fields) {
+  Snapshot state;
+  state.fields = std::move(fields);
+  return state;
 }
 
 Fields randomFields(const Grid& grid) {
@@ -56,9 +64,10 @@ std::vector<float> readBand(GDALDataset& dataset, int band) {
 }
 
 TEST(GeoTiff, KeepsEveryBitWithNorthOnTop) {
-  const Grid grid = oddGrid();
+  const SimulatorParameters parameters = oddParameters();
+  const Grid grid = parameters.grid.grid();
   const Fields fields = randomFields(grid);
-  saveState("state.tif", grid, fields, {});
+  saveState("state.tif", parameters, stateOf(fields));
   const Dataset dataset = open("state.tif");
   ASSERT_NE(dataset, nullptr);
   ASSERT_EQ(dataset->GetRasterCount(), 4);
@@ -82,8 +91,9 @@ TEST(GeoTiff, KeepsEveryBitWithNorthOnTop) {
 }
 
 TEST(GeoTiff, PlacesCellsWhereTheGridDoes) {
-  const Grid grid = oddGrid();
-  saveState("placed.tif", grid, randomFields(grid), {});
+  const SimulatorParameters parameters = oddParameters();
+  const Grid grid = parameters.grid.grid();
+  saveState("placed.tif", parameters, stateOf(randomFields(grid)));
   const Dataset dataset = open("placed.tif");
   std::array<double, 6> transform{};
   ASSERT_EQ(dataset->GetGeoTransform(transform.data()), CE_None);
@@ -104,7 +114,7 @@ TEST(GeoTiff, MetadataBringsBackEveryBitOfASimulation) {
   depth[cells / 2] = 0.3f;
   Simulator simulator(parameters, std::vector<float>(cells, 0.0f), depth);
   simulator.advance(0.1);
-  saveState("simulated.tif", simulator.grid(), simulator.fields(), stateMetadata(simulator));
+  saveState("simulated.tif", parameters, simulator.snapshot());
 
   const Dataset dataset = open("simulated.tif");
   const auto item = [&](const char* key) {
@@ -123,9 +133,10 @@ TEST(GeoTiff, MetadataBringsBackEveryBitOfASimulation) {
 }
 
 TEST(GeoTiff, SaysWhichFileCannotBeWritten) {
-  const Grid grid = oddGrid();
+  const SimulatorParameters parameters = oddParameters();
+  const Grid grid = parameters.grid.grid();
   try {
-    saveState("no_such_folder/state.tif", grid, randomFields(grid), {});
+    saveState("no_such_folder/state.tif", parameters, stateOf(randomFields(grid)));
     FAIL();
   } catch (const std::runtime_error& error) {
     EXPECT_EQ(std::string(error.what()).rfind("no_such_folder/state.tif: ", 0), 0u) << error.what();
@@ -133,10 +144,32 @@ TEST(GeoTiff, SaysWhichFileCannotBeWritten) {
 }
 
 TEST(GeoTiff, RefusesFieldsOfAnotherSize) {
-  const Grid grid = oddGrid();
+  const SimulatorParameters parameters = oddParameters();
+  const Grid grid = parameters.grid.grid();
   Fields fields = randomFields(grid);
   fields.momentum_y.pop_back();
-  EXPECT_THROW(saveState("short.tif", grid, fields, {}), std::runtime_error);
+  EXPECT_THROW(saveState("short.tif", parameters, stateOf(fields)), std::runtime_error);
+}
+
+/// Why a state cannot be read.
+std::string refusal(const std::string& path, const SimulatorParameters& parameters) {
+  try {
+    loadState(path, parameters);
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(GeoTiff, SaysWhyAStateCannotBeRead) {
+  SimulatorParameters parameters = oddParameters();
+  EXPECT_EQ(refusal("missing.tif", parameters).rfind("missing.tif: ", 0), 0u);
+  std::ofstream("text.tif") << "no image";
+  EXPECT_EQ(refusal("text.tif", parameters).rfind("text.tif: ", 0), 0u);
+  saveState("odd.tif", parameters, stateOf(randomFields(parameters.grid.grid())));
+  parameters.grid.origin.x() += 1.0;
+  EXPECT_NE(refusal("odd.tif", parameters).find("odd.tif: grid.origin_x: -1.5"), std::string::npos)
+      << refusal("odd.tif", parameters);
 }
 
 }  // namespace

@@ -130,4 +130,18 @@ TEST(SandRun, SaysWhatItCanDo) {
   EXPECT_EQ(sandRun("--version").exit_code, 0);
 }
 
+TEST(SandRun, GoesOnFromASavedState) {
+  const std::string scene = sceneFile(kSmallScene);
+  ASSERT_EQ(sandRun(scene + " --duration 0.3 --save whole.tif --report whole.json").exit_code, 0);
+  ASSERT_EQ(sandRun(scene + " --duration 0.15 --save half.tif").exit_code, 0);
+  const Outcome resumed =
+      sandRun(scene + " --duration 0.3 --load half.tif --save resumed.tif --report resumed.json");
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.errors;
+  const nlohmann::json whole = nlohmann::json::parse(contentsOf("whole.json"));
+  const nlohmann::json second = nlohmann::json::parse(contentsOf("resumed.json"));
+  for (const char* key : {"steps", "volume_end_m3", "max_speed_end", "active_cells_end", "simulated_s"})
+    EXPECT_EQ(whole.at(key), second.at(key)) << key;
+  expectRefused(scene + " --load missing.tif", "missing.tif: ");
+}
+
 }  // namespace

@@ -116,6 +116,8 @@ class Simulator {
   /// Runs the sand on by `duration` [s] exactly. @throws InvalidParameter when negative, not finite, or when
   /// a fixed step breaks its bound
   void advance(double duration);
+  /// The same until a time [s]: to no end that is a sum of roundings.
+  void advanceTo(double time);
   double time() const;  ///< [s] since construction
 
   Fields fields() const;

@@ -1,0 +1,124 @@
+#include <gtest/gtest.h>
+
+#include "random_bodies.h"
+#include "random_fields.h"
+#include "random_seed.h"
+#include "shallow_sand/scene/geotiff.h"
+
+namespace shallow_sand {
+namespace {
+
+/// A scene with everything that a run can remember.
+struct BusyScene {
+  RandomSand sand;
+  std::vector<Pour> pours;
+  std::vector<RandomBody> bodies;
+  double frame = 0.0;  ///< [s]
+
+  explicit BusyScene(std::mt19937& random) : sand(randomSand(random, 1 + random() % 90, 1 + random() % 50)) {
+    SimulatorParameters& parameters = sand.parameters;
+    parameters.edges = randomEdges(random);
+    parameters.gravity = {uniform(random, -2.0, 2.0), uniform(random, -2.0, 2.0), -9.81};
+    if (random() % 2 == 0) parameters.solver.reconstruction = Reconstruction::minmod;
+    parameters.threads = 1 + random() % 2;
+    frame = std::sqrt(parameters.grid.spacing / 9.81);
+    const Grid grid = parameters.grid.grid();
+    for (int k = random() % 3; k > 0; --k) {
+      Pour pour;
+      pour.position = randomPlace(random, grid, 0.0);
+      pour.radius = uniform(random, 0.1, 6.0) * grid.spacing;
+      pour.rate = uniform(random, -5.0, 10.0) * std::pow(grid.spacing, 3) / frame;
+      pour.start = uniform(random, 0.0, 8.0) * frame;
+      pours.push_back(pour);
+    }
+    for (int k = random() % 3; k > 0; --k) {
+      bodies.push_back(randomBody(random, grid.spacing));
+      moveThroughSand(random, sand, 15.0 * frame, bodies.back());
+    }
+  }
+
+  Simulator simulator() const {
+    Simulator built(sand.parameters, sand.bed, sand.depth);
+    for (const Pour& pour : pours) built.addPour(pour);
+    for (const RandomBody& body : bodies) addTo(built, body);
+    return built;
+  }
+};
+
+void run(Simulator& simulator, double frame, int begin, int end) {
+  for (int number = begin; number < end; ++number) simulator.advanceTo((number + 1) * frame);
+}
+
+void expectSame(const Simulator& one, const Simulator& other) {
+  const Fields a = one.fields();
+  const Fields b = other.fields();
+  EXPECT_TRUE(sameBits(a.bed, b.bed));
+  EXPECT_TRUE(sameBits(a.depth, b.depth));
+  EXPECT_TRUE(sameBits(a.momentum_x, b.momentum_x));
+  EXPECT_TRUE(sameBits(a.momentum_y, b.momentum_y));
+  EXPECT_EQ(one.time(), other.time());
+  EXPECT_EQ(one.progress().steps, other.progress().steps);
+  EXPECT_EQ(one.progress().last_step, other.progress().last_step);
+  EXPECT_EQ(one.ledger().now, other.ledger().now);
+  EXPECT_NEAR(one.ledger().poured, other.ledger().poured, 1e-12 * (1.0 + one.ledger().poured));
+  EXPECT_NEAR(one.ledger().left, other.ledger().left, 1e-12 * (1.0 + one.ledger().left));
+}
+
+TEST(Snapshots, ARunGoesOnBitForBit) {
+  std::mt19937 random = seededGenerator();
+  for (int number = 0; number < 40; ++number) {
+    const BusyScene scene(random);
+    Simulator whole = scene.simulator();
+    run(whole, scene.frame, 0, 20);
+    const int half = static_cast<int>(random() % 20);
+    Simulator first = scene.simulator();
+    run(first, scene.frame, 0, half);
+    Simulator second = scene.simulator();
+    second.restore(first.snapshot());
+    run(second, scene.frame, half, 20);
+    SCOPED_TRACE("scene " + std::to_string(number) + ", taken after frame " + std::to_string(half));
+    expectSame(whole, second);
+    if (HasFailure()) return;
+  }
+}
+
+TEST(Snapshots, ASavedRunGoesOnBitForBit) {
+  std::mt19937 random = seededGenerator();
+  for (int number = 0; number < 10; ++number) {
+    const BusyScene scene(random);
+    Simulator whole = scene.simulator();
+    run(whole, scene.frame, 0, 16);
+    {
+      Simulator first = scene.simulator();
+      run(first, scene.frame, 0, 8);
+      saveState("half.tif", first.parameters(), first.snapshot());
+    }
+    Simulator second = scene.simulator();
+    second.restore(loadState("half.tif", scene.sand.parameters));
+    run(second, scene.frame, 8, 16);
+    SCOPED_TRACE("scene " + std::to_string(number));
+    expectSame(whole, second);
+    if (HasFailure()) return;
+  }
+}
+
+TEST(Snapshots, ThatDoNotFitAreRefusedAndChangeNothing) {
+  std::mt19937 random = seededGenerator();
+  const RandomSand sand = randomSand(random, 20, 10);
+  Simulator simulator(sand.parameters, sand.bed, sand.depth);
+  const auto refused = [&](const std::function<void(Snapshot&)>& spoil) {
+    Snapshot snapshot = simulator.snapshot();
+    spoil(snapshot);
+    EXPECT_THROW(simulator.restore(snapshot), InvalidParameter);
+    EXPECT_TRUE(sameBits(simulator.fields().depth, sand.depth));
+  };
+  refused([](Snapshot& s) { s.fields.depth.pop_back(); });
+  refused([](Snapshot& s) { s.fields.depth[3] = -1.0f; });
+  refused([](Snapshot& s) { s.fields.momentum_y[5] = std::nanf(""); });
+  refused([](Snapshot& s) { s.time = std::nan(""); });
+  refused([](Snapshot& s) { s.next_step = 0.0; });
+  refused([](Snapshot& s) { s.contacts.window = {0, 0, 2, 2}; });
+}
+
+}  // namespace
+}  // namespace shallow_sand
