@@ -11,13 +11,6 @@
 namespace shallow_sand {
 namespace {
 
-/// Errors are one line, whatever the file holds.
-std::string oneLine(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
-  return text;
-}
-
 std::string shortened(const std::string& text) {
   constexpr std::size_t kLongest = 60;
   return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
@@ -78,6 +71,12 @@ YAML::Mark markBelow(const YAML::Node& node, const std::string& path) {
 }
 
 }  // namespace
+
+std::string oneLine(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+  return text;
+}
 
 SceneValue::SceneValue(const YAML::Node& node, const SceneSource& source)
     : SceneValue(node, "", std::make_shared<const SceneSource>(source)) {}

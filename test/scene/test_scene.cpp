@@ -213,7 +213,7 @@ TEST(Scene, FilesThatAreNoScenesAreRefused) {
 }
 
 TEST(Scene, ExamplesLoad) {
-  for (const std::string name : {"blade", "pile", "cone_at_rest"}) {
+  for (const std::string name : {"blade", "pile", "cone_at_rest", "terrain"}) {
     const Scene scene = loadScene(SHALLOW_SAND_SOURCE_DIR "/config/scenes/" + name + ".yaml");
     EXPECT_EQ(scene.name, name);
   }
