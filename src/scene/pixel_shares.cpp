@@ -9,21 +9,22 @@ namespace {
 PixelShare coveredBy(double low, double high, int pixels) {
   const double begin = std::max(0.0, low);
   const double end = std::min(static_cast<double>(pixels), high);
-  PixelShare share{static_cast<int>(begin), {}};
-  for (int k = share.first; k < end; ++k) {
-    share.weights.push_back(std::min(end, k + 1.0) - std::max(begin, static_cast<double>(k)));
+  const double first = std::floor(begin);
+  const double last = std::ceil(end) - 1.0;
+  if (last <= first) {
+    return {static_cast<int>(first), 1, 1.0, 1.0};
   }
-  return share;
+  return {static_cast<int>(first), static_cast<int>(last - first) + 1, first + 1.0 - begin, end - last};
 }
 
 PixelShare linearAt(double centre, int pixels) {
   const double before = std::floor(centre - 0.5);
   const int first = static_cast<int>(before);
   if (first < 0 || first + 1 >= pixels) {
-    return {std::clamp(first, 0, pixels - 1), {1.0}};
+    return {std::clamp(first, 0, pixels - 1), 1, 1.0, 1.0};
   }
   const double beyond = centre - 0.5 - before;
-  return {first, {1.0 - beyond, beyond}};
+  return {first, 2, 1.0 - beyond, beyond};
 }
 
 }  // namespace
@@ -41,7 +42,7 @@ std::vector<PixelShare> pixelShares(int cells, double start, double step, int pi
       continue;
     }
     if (coincident) {
-      share = {static_cast<int>(centre), {1.0}};
+      share = {static_cast<int>(centre), 1, 1.0, 1.0};
     } else if (length > 1.0) {
       share = coveredBy(centre - 0.5 * length, centre + 0.5 * length, pixels);
     } else {

@@ -4,10 +4,15 @@
 
 namespace shallow_sand {
 
-/// The pixels that a cell gets its number from, along one axis. Along two axes shares multiply.
+/// The pixels that a cell gets its number from, along one axis. Along two axes weights multiply.
 struct PixelShare {
-  int first = 0;                ///< number of a pixel
-  std::vector<double> weights;  ///< of it and those after it; none: the cell's centre is not on the image
+  int first = 0;  ///< number of a pixel
+  int count = 0;  ///< of pixels from it on; 0: the cell's centre is not on the image
+  double first_weight = 1.0;
+  double last_weight = 1.0;
+
+  /// Those between the first and the last have weight 1.
+  double weight(int k) const { return k == 0 ? first_weight : k == count - 1 ? last_weight : 1.0; }
 };
 
 /// The cells of a row or column of a grid on an image. Where cells coincide with pixels, each gets its own;

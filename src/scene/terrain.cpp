@@ -42,9 +42,9 @@ struct Window {
 Window windowOf(const std::vector<PixelShare>& shares) {
   Window window;
   for (const PixelShare& share : shares) {
-    if (!share.weights.empty()) {
+    if (share.count > 0) {
       window.begin = std::min(window.begin, share.first);
-      window.end = std::max(window.end, share.first + static_cast<int>(share.weights.size()));
+      window.end = std::max(window.end, share.first + share.count);
     }
   }
   return window;
@@ -110,18 +110,20 @@ class Mean {
 void addLine(const std::vector<double>& line, int line_begin, double line_weight,
              const std::vector<PixelShare>& shares, std::vector<Mean>& means) {
   for (std::size_t i = 0; i < shares.size(); ++i) {
-    auto pixel = static_cast<std::size_t>(shares[i].first - line_begin);
-    for (const double weight : shares[i].weights) {
-      means[i].add(line_weight * weight, line[pixel++]);
+    for (int k = 0; k < shares[i].count; ++k) {
+      const auto pixel = static_cast<std::size_t>(shares[i].first - line_begin + k);
+      means[i].add(line_weight * shares[i].weight(k), line[pixel]);
     }
   }
 }
 
-/// Keeps files from being read for hours.
+/// Keeps files from being read for hours, or in lines that no memory holds.
 void requireFewPixels(const TerrainParameters& parameters, const Window& columns, const Window& lines) {
+  constexpr int kMostAcross = 1 << 24;
   constexpr double kMostPixels = 4294967296.0;
-  if (static_cast<double>(columns.size()) * static_cast<double>(lines.size()) > kMostPixels) {
-    failTerrain(parameters, "is too fine", "at most 2^32 pixels on the grid");
+  if (columns.size() > kMostAcross ||
+      static_cast<double>(columns.size()) * static_cast<double>(lines.size()) > kMostPixels) {
+    failTerrain(parameters, "is too fine", "at most 2^24 pixels in a line on the grid, and 2^32 in all");
   }
 }
 
@@ -175,9 +177,8 @@ std::vector<float> readCells(const TerrainParameters& parameters, const Grid& gr
   for (int j = grid.rows - 1; j >= 0; --j) {
     const PixelShare& share = shares.rows[static_cast<std::size_t>(j)];
     std::vector<Mean> means(static_cast<std::size_t>(grid.columns));
-    int line = share.first;
-    for (const double weight : share.weights) {
-      addLine(reader.read(line++, columns), columns.begin, weight, shares.columns, means);
+    for (int k = 0; k < share.count; ++k) {
+      addLine(reader.read(share.first + k, columns), columns.begin, share.weight(k), shares.columns, means);
     }
     for (int i = 0; i < grid.columns; ++i) {
       const std::size_t cell = grid.index(i, j);

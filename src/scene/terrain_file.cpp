@@ -40,6 +40,20 @@ int findBand(GDALDataset& dataset, const TerrainParameters& parameters) {
   throw InvalidParameter("band", parameters.band, "a number from 1 to " + std::to_string(count) + names);
 }
 
+/// GDAL reads whole blocks. A file that names a huge one takes all memory, however few bytes it has itself.
+void requireSmallBlocks(const TerrainParameters& parameters, GDALRasterBand& band) {
+  constexpr double kMostBytes = 1073741824.0;
+  int width = 0;
+  int height = 0;
+  band.GetBlockSize(&width, &height);
+  const double bytes =
+      static_cast<double>(width) * height * GDALGetDataTypeSizeBytes(band.GetRasterDataType());
+  if (bytes > kMostBytes) {
+    failTerrain(parameters, "is stored in too large blocks",
+                "at most 1 GiB each (gdal_translate -co TILED=YES makes small ones)");
+  }
+}
+
 void requireNumbers(const TerrainParameters& parameters, GDALRasterBand& band) {
   if (GDALDataTypeIsComplex(band.GetRasterDataType()) != 0 ||
       band.GetColorInterpretation() == GCI_PaletteIndex) {
@@ -104,6 +118,7 @@ TerrainFile openTerrain(const TerrainParameters& parameters, const Grid& grid) {
   file.dataset = openImage(parameters);
   file.band = findBand(*file.dataset, parameters);
   requireNumbers(parameters, *file.dataset->GetRasterBand(file.band));
+  requireSmallBlocks(parameters, *file.dataset->GetRasterBand(file.band));
   const Placement placement = placementOf(parameters, *file.dataset, grid);
   file.corner = placement.corner;
   file.pixel = placement.size.cwiseQuotient(

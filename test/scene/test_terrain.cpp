@@ -251,6 +251,34 @@ TEST(Terrain, GapsAreRefusedOrFilledAsTold) {
   }
 }
 
+TEST(Terrain, TransparentPixelsHaveNoData) {
+  GDALAllRegister();
+  const ImagePointer image(
+      GetGDALDriverManager()->GetDriverByName("MEM")->Create("", 2, 1, 2, GDT_UInt16, nullptr));
+  image->GetRasterBand(1)->Fill(5.0);
+  image->GetRasterBand(2)->SetColorInterpretation(GCI_AlphaBand);
+  std::array<std::uint16_t, 2> alpha{65535, 0};
+  ASSERT_EQ(
+      image->GetRasterBand(2)->RasterIO(GF_Write, 0, 0, 2, 1, alpha.data(), 2, 1, GDT_UInt16, 0, 0, nullptr),
+      CE_None);
+  writeImage("transparent.png", "PNG", *image);
+  const Scene scene =
+      sceneFrom("{grid: {size: [2, 1], spacing: 1}, bed: {file: transparent.png, no_data: -1}}");
+  EXPECT_EQ(scene.bed, (std::vector<float>{5.0f, -1.0f}));
+}
+
+TEST(Terrain, LessThanHalfOfACellIsNoData) {
+  TestImage image;
+  image.columns = 8;
+  // Two, one and no pixels of the first three cells, all of the last.
+  image.value = [](int column, int) {
+    return column == 2 || column == 4 || column == 5 ? std::nan("") : 1.0 + column;
+  };
+  writeTiff("halves.tif", image);
+  const Scene scene = sceneFrom("{grid: {size: [4, 1], spacing: 1}, bed: {file: halves.tif, no_data: 0}}");
+  EXPECT_EQ(scene.bed, (std::vector<float>{1.5f, 4.0f, 0.0f, 7.5f}));
+}
+
 TEST(Terrain, CellsBesideTheImageHaveNoData) {
   writeTiff("small.tif", withGap(2.0));
   const std::string grid = "{grid: {size: [6, 5], spacing: 0.5, origin: [-1, 1]}, bed: {file: small.tif";
@@ -351,7 +379,9 @@ class TerrainMistakes : public ::testing::TestWithParam<TerrainMistake> {
     writeTiff("complex.tif", image);
     std::ofstream("text.tif") << "no image at all";
     writeImage("other.img", "HFA", *imageInMemory(TestImage()));
-    writeHuge("huge.tif");
+    writeHuge("huge.tif", 200000, 200000, 8192);
+    writeHuge("long.tif", 20000000, 1, 16);
+    writeHuge("blocks.tif", 60000, 60000, 32768);
   }
 
   static void writeWithReference(const std::string& path, const TestImage& image, int epsg) {
@@ -362,12 +392,13 @@ class TerrainMistakes : public ::testing::TestWithParam<TerrainMistake> {
     writeImage(path, "GTiff", *memory);
   }
 
-  /// Nothing but gaps, in few bytes.
-  static void writeHuge(const std::string& path) {
-    std::array<const char*, 5> options{"SPARSE_OK=TRUE", "TILED=YES", "BLOCKXSIZE=8192", "BLOCKYSIZE=8192",
-                                       nullptr};
+  /// Nothing but gaps, in few bytes. @param block length of the sides of its blocks
+  static void writeHuge(const std::string& path, int columns, int lines, int block) {
+    const std::string width = "BLOCKXSIZE=" + std::to_string(block);
+    const std::string height = "BLOCKYSIZE=" + std::to_string(block);
+    std::array<const char*, 5> options{"SPARSE_OK=TRUE", "TILED=YES", width.c_str(), height.c_str(), nullptr};
     ImagePointer(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
-        path.c_str(), 200000, 200000, 1, GDT_Byte, const_cast<char**>(options.data())));
+        path.c_str(), columns, lines, 1, GDT_Int16, const_cast<char**>(options.data())));
   }
 };
 
@@ -415,8 +446,15 @@ INSTANTIATE_TEST_SUITE_P(
         TerrainMistake{
             "bed: {file: high.tif}",
             "bed.file: ./high.tif gives 1e+12 at (0.5, 0.5); expected numbers of at most 1e9 in size"},
+        TerrainMistake{"bed: {file: long.tif}",
+                       "bed.file: ./long.tif is too fine; expected at most 2^24 pixels in a line on the "
+                       "grid, and 2^32 in all"},
+        TerrainMistake{"bed: {file: blocks.tif}",
+                       "bed.file: ./blocks.tif is stored in too large blocks; expected at most 1 GiB each "
+                       "(gdal_translate -co TILED=YES makes small ones)"},
         TerrainMistake{"bed: {file: huge.tif}",
-                       "bed.file: ./huge.tif is too fine; expected at most 2^32 pixels on the grid"}));
+                       "bed.file: ./huge.tif is too fine; expected at most 2^24 pixels in a line on the "
+                       "grid, and 2^32 in all"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Keys, TerrainMistakes,
