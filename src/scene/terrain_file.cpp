@@ -27,6 +27,7 @@ DatasetPointer openImage(const TerrainParameters& parameters) {
 }
 
 int findBand(GDALDataset& dataset, const TerrainParameters& parameters) {
+  constexpr int kMostNames = 10;
   const int count = dataset.GetRasterCount();
   std::string names;
   for (int number = 1; number <= count; ++number) {
@@ -35,19 +36,24 @@ int findBand(GDALDataset& dataset, const TerrainParameters& parameters) {
         parameters.band == std::to_string(number)) {
       return number;
     }
-    names += description.empty() ? "" : ", " + description;
+    const bool told = !description.empty() && number <= kMostNames;
+    names += told ? ", " + description : "";
   }
   throw InvalidParameter("band", parameters.band, "a number from 1 to " + std::to_string(count) + names);
 }
 
-/// GDAL reads whole blocks. A file that names a huge one takes all memory, however few bytes it has itself.
-void requireSmallBlocks(const TerrainParameters& parameters, GDALRasterBand& band) {
+/// GDAL reads whole blocks, which may hold all bands. A file that names a huge one takes all memory, however
+/// few bytes it has itself.
+void requireSmallBlocks(const TerrainParameters& parameters, GDALDataset& dataset, GDALRasterBand& band) {
   constexpr double kMostBytes = 1073741824.0;
   int width = 0;
   int height = 0;
   band.GetBlockSize(&width, &height);
-  const double bytes =
-      static_cast<double>(width) * height * GDALGetDataTypeSizeBytes(band.GetRasterDataType());
+  const char* order = dataset.GetMetadataItem("INTERLEAVE", "IMAGE_STRUCTURE");
+  const bool all_bands = order != nullptr && std::string(order) == "PIXEL";
+  const double bytes = static_cast<double>(width) * height *
+                       GDALGetDataTypeSizeBytes(band.GetRasterDataType()) *
+                       (all_bands ? dataset.GetRasterCount() : 1);
   if (bytes > kMostBytes) {
     failTerrain(parameters, "is stored in too large blocks",
                 "at most 1 GiB each (gdal_translate -co TILED=YES makes small ones)");
@@ -117,8 +123,9 @@ TerrainFile openTerrain(const TerrainParameters& parameters, const Grid& grid) {
   TerrainFile file;
   file.dataset = openImage(parameters);
   file.band = findBand(*file.dataset, parameters);
-  requireNumbers(parameters, *file.dataset->GetRasterBand(file.band));
-  requireSmallBlocks(parameters, *file.dataset->GetRasterBand(file.band));
+  GDALRasterBand& band = *file.dataset->GetRasterBand(file.band);
+  requireNumbers(parameters, band);
+  requireSmallBlocks(parameters, *file.dataset, band);
   const Placement placement = placementOf(parameters, *file.dataset, grid);
   file.corner = placement.corner;
   file.pixel = placement.size.cwiseQuotient(
