@@ -11,6 +11,7 @@
 #include "random_seed.h"
 #include "shallow_sand/scene/geotiff.h"
 #include "shallow_sand/scene/scene.h"
+#include "shallow_sand/scene/simulation.h"
 #include "terrain_files.h"
 
 namespace shallow_sand {
@@ -348,6 +349,32 @@ TEST(Terrain, MapsOfTheMaterialAreHeldInTheUnitsOfTheCode) {
   EXPECT_TRUE(scene.material_fields.layer_depth.empty());
   EXPECT_EQ(scene.parameters.material.layer_depth, 0.2);
   EXPECT_EQ(scene.parameters.material.friction_angle, Material().friction_angle);
+}
+
+TEST(Terrain, AMapOfTheMaterialRulesTheSand) {
+  TestImage image;
+  image.columns = 2;
+  image.value = [](int column, int) { return column == 0 ? 10.0 : 40.0; };
+  // Two halves of one angle each, but for the cells between their centres.
+  writeTiff("halves.tif", image);
+  const Scene scene = sceneFrom(
+      "{grid: {size: [4, 1], spacing: 0.05}, material: {friction_angle: {file: halves.tif, origin: [-2, 0], "
+      "size: [8, 1]}}, "
+      "sand: [{cone: {center: [0.6, 0.5], height: 0.2, slope_angle: 30}}, {cone: {center: [3.4, 0.5], "
+      "height: 0.2, slope_angle: 30}}], backend: cpu}");
+  Simulator simulator = buildSimulator(scene);
+  simulator.advance(0.5);
+  const std::vector<float> depth = simulator.fields().depth;
+  const Grid grid = gridOf(scene);
+  double moved_low = 0.0;
+  double moved_high = 0.0;
+  for (std::size_t cell = 0; cell < grid.cells(); ++cell) {
+    const double moved = std::abs(static_cast<double>(depth[cell]) - static_cast<double>(scene.depth[cell]));
+    double& worst = cell % static_cast<std::size_t>(grid.columns) < 40 ? moved_low : moved_high;
+    worst = std::max(worst, moved);
+  }
+  EXPECT_GT(moved_low, 0.02);
+  EXPECT_EQ(moved_high, 0.0);
 }
 
 /// What stands in a scene after the grid, and its error.
