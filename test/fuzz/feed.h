@@ -94,7 +94,7 @@ class MemoryFile {
 
 /// What GDAL makes of an image, in few numbers: its kind, how large it is, in which blocks it lies, ...
 struct ImageTraits {
-  double pixels = 0.0;
+  double pixels = 0.0;  ///< of all bands
   double block_pixels = 0.0;
   std::vector<int> kinds;
 };
@@ -110,7 +110,7 @@ inline ImageTraits traitsOf(const char* path) {
     int block_width = 0;
     int block_height = 0;
     band.GetBlockSize(&block_width, &block_height);
-    traits.pixels = static_cast<double>(band.GetXSize()) * band.GetYSize();
+    traits.pixels = static_cast<double>(band.GetXSize()) * band.GetYSize() * GDALGetRasterCount(image);
     traits.block_pixels = static_cast<double>(block_width) * block_height;
     const auto magnitude = [](int number) { return number > 0 ? std::ilogb(number) : -1; };
     traits.kinds = {magnitude(GDALGetRasterCount(image)), band.GetRasterDataType(), band.GetMaskFlags(),

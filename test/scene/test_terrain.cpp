@@ -409,6 +409,7 @@ class TerrainMistakes : public ::testing::TestWithParam<TerrainMistake> {
     writeHuge("huge.tif", 200000, 200000, 8192);
     writeHuge("long.tif", 20000000, 1, 16);
     writeHuge("blocks.tif", 60000, 60000, 32768);
+    writeHuge("bands.tif", 600, 600, 512, 3000);
   }
 
   static void writeWithReference(const std::string& path, const TestImage& image, int epsg) {
@@ -420,12 +421,13 @@ class TerrainMistakes : public ::testing::TestWithParam<TerrainMistake> {
   }
 
   /// Nothing but gaps, in few bytes. @param block length of the sides of its blocks
-  static void writeHuge(const std::string& path, int columns, int lines, int block) {
+  static void writeHuge(const std::string& path, int columns, int lines, int block, int bands = 1) {
     const std::string width = "BLOCKXSIZE=" + std::to_string(block);
     const std::string height = "BLOCKYSIZE=" + std::to_string(block);
-    std::array<const char*, 5> options{"SPARSE_OK=TRUE", "TILED=YES", width.c_str(), height.c_str(), nullptr};
+    std::array<const char*, 6> options{"SPARSE_OK=TRUE", "TILED=YES",    "INTERLEAVE=PIXEL",
+                                       width.c_str(),    height.c_str(), nullptr};
     ImagePointer(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
-        path.c_str(), columns, lines, 1, GDT_Int16, const_cast<char**>(options.data())));
+        path.c_str(), columns, lines, bands, GDT_Int16, const_cast<char**>(options.data())));
   }
 };
 
@@ -478,6 +480,9 @@ INSTANTIATE_TEST_SUITE_P(
                        "grid, and 2^32 in all"},
         TerrainMistake{"bed: {file: blocks.tif}",
                        "bed.file: ./blocks.tif is stored in too large blocks; expected at most 1 GiB each "
+                       "(gdal_translate -co TILED=YES makes small ones)"},
+        TerrainMistake{"bed: {file: bands.tif}",
+                       "bed.file: ./bands.tif is stored in too large blocks; expected at most 1 GiB each "
                        "(gdal_translate -co TILED=YES makes small ones)"},
         TerrainMistake{"bed: {file: huge.tif}",
                        "bed.file: ./huge.tif is too fine; expected at most 2^24 pixels in a line on the "
