@@ -100,13 +100,29 @@ void SolverParameters::validate() const {
   if (fixed_step) requireStep("solver.fixed_step", *fixed_step);
 }
 
+void Region::validate() const {
+  requireFinite("center[0]", center.x(), "metres");
+  requireFinite("center[1]", center.y(), "metres");
+  if (shape == Shape::disc) {
+    requirePositive("radius", radius, "metres");
+  } else {
+    requirePositive("size[0]", size.x(), "metres");
+    requirePositive("size[1]", size.y(), "metres");
+  }
+}
+
+void Edit::validate() const {
+  region.validate();
+  requireFinite("value", value, "metres");
+  if (value < 0.0 && operation != EditOperation::level)
+    throw InvalidParameter("value", text(value), "a number of metres that is not negative");
+}
+
 void Pour::validate() const {
   requireFinite("position[0]", position.x(), "metres");
   requireFinite("position[1]", position.y(), "metres");
   requirePositive("radius", radius, "metres");
   requireFinite("rate", rate, "cubic metres a second");
-  if (rate < 0.0)
-    throw InvalidParameter("rate", text(rate), "a number of cubic metres a second that is not negative");
   requireFinite("start", start, "seconds");
   if (!(stop > start))
     throw InvalidParameter("stop", text(stop), "a time after start (" + text(start) + " s)");

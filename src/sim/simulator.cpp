@@ -152,16 +152,82 @@ class Simulator::Implementation {
 
   void addPour(const Pour& pour) {
     pour.validate();
-    const Eigen::Vector2d local = pour.position - Eigen::Vector2d(grid_.origin_x, grid_.origin_y);
-    const Eigen::Vector2d size = grid_.spacing * Eigen::Vector2d(grid_.columns, grid_.rows);
-    if ((local.array() < 0.0).any() || (local.array() > size.array()).any()) {
-      std::ostringstream found;
-      found << "[" << pour.position.x() << ", " << pour.position.y() << "]";
-      throw InvalidParameter("position", found.str(), "a place on the grid");
-    }
-    engine_->addPour(static_cast<float>(local.x()), static_cast<float>(local.y()),
-                     static_cast<float>(pour.radius));
+    requireOnGrid("position", pour.position);
+    Region region;
+    region.center = pour.position;
+    region.radius = pour.radius;
+    engine_->addPour(localRegion(region, grid_));
     pours_.push_back(pour);
+  }
+
+  void requireOnGrid(const char* key, const Eigen::Vector2d& position) const {
+    const Eigen::Vector2d local = position - Eigen::Vector2d(grid_.origin_x, grid_.origin_y);
+    const Eigen::Vector2d size = grid_.spacing * Eigen::Vector2d(grid_.columns, grid_.rows);
+    if ((local.array() >= 0.0).all() && (local.array() <= size.array()).all()) return;
+    std::ostringstream found;
+    found << "[" << position.x() << ", " << position.y() << "]";
+    throw InvalidParameter(key, found.str(), "a place on the grid");
+  }
+
+  double edit(const Edit& edit) {
+    edit.validate();
+    const LocalRegion region = localRegion(edit.region, grid_);
+    if (shallow_sand::windowOf(region, grid_).empty()) requireOnGrid("center", edit.region.center);
+    // Sand may have come to lie where a body is.
+    placed_anew_ = placed_anew_ || !bodies_.empty();
+    return engine_->edit(region, edit.operation, static_cast<float>(edit.value));
+  }
+
+  Snapshot snapshot() const {
+    return {engine_->fields(), engine_->contacts(), !placed_anew_, time_, trial_, progress_, ledger()};
+  }
+
+  void restore(const Snapshot& snapshot) {
+    requireFit(snapshot);
+    Fields fields = snapshot.fields;
+    for (std::vector<float>* momentum : {&fields.momentum_x, &fields.momentum_y}) {
+      // Negative zeros would be bits that a step changes.
+      for (float& value : *momentum) value += 0.0f;
+    }
+    engine_->restore(fields, snapshot.contacts);
+    placed_anew_ = !snapshot.bodies_cleared;
+    time_ = snapshot.time;
+    trial_ = snapshot.next_step;
+    progress_ = snapshot.progress;
+    start_volume_ = snapshot.ledger.start;
+    poured_before_ = snapshot.ledger.poured - engine_->poured();
+    left_before_ = snapshot.ledger.left - engine_->left();
+  }
+
+  void requireFit(const Snapshot& snapshot) const {
+    const float any = -std::numeric_limits<float>::infinity();
+    checkField("bed", snapshot.fields.bed, grid_, any);
+    checkField("depth", snapshot.fields.depth, grid_, 0.0f);
+    checkField("momentum_x", snapshot.fields.momentum_x, grid_, any);
+    checkField("momentum_y", snapshot.fields.momentum_y, grid_, any);
+    if (!std::isfinite(snapshot.time))
+      throw InvalidParameter("time", std::to_string(snapshot.time), "finite seconds");
+    if (!(snapshot.next_step > 0.0))
+      throw InvalidParameter("next_step", std::to_string(snapshot.next_step), "positive seconds");
+    requireFit(snapshot.contacts);
+  }
+
+  void requireFit(const ContactSnapshot& contacts) const {
+    const Window& window = contacts.window;
+    if (window.empty()) return;
+    if (bodies_.empty())
+      throw InvalidParameter("contacts", "those of bodies", "none, for there are no bodies");
+    if (window.united(Window::all(grid_)).columns() != grid_.columns ||
+        window.united(Window::all(grid_)).rows() != grid_.rows)
+      throw InvalidParameter("contacts", "a window that reaches beyond the grid", "one on the grid");
+    const std::size_t cells = static_cast<std::size_t>(window.columns()) * window.rows();
+    for (const auto* values :
+         {&contacts.ceiling, &contacts.length, &contacts.velocity_x, &contacts.velocity_y}) {
+      const bool valid =
+          values->size() == cells &&
+          std::none_of(values->begin(), values->end(), [](float value) { return std::isnan(value); });
+      if (!valid) throw InvalidParameter("contacts", "a bad list", std::to_string(cells) + " numbers");
+    }
   }
 
   void addBody(const std::string& name, std::shared_ptr<const DistanceField> field) {
@@ -205,7 +271,7 @@ class Simulator::Implementation {
     progress_.cell_updates += engine_->accept();
     for (std::size_t k = 0; k < pours_.size(); ++k) {
       const double seconds = std::min(next, pours_[k].stop) - std::max(time_, pours_[k].start);
-      if (seconds > 0.0 && pours_[k].rate > 0.0) engine_->pour(k, seconds * pours_[k].rate);
+      if (seconds > 0.0 && pours_[k].rate != 0.0) engine_->pour(k, seconds * pours_[k].rate);
     }
     time_ = next;
     progress_.last_step = step;
@@ -301,7 +367,7 @@ class Simulator::Implementation {
   }
 
   Ledger ledger() const {
-    return {start_volume_, engine_->poured(), engine_->left(),
+    return {start_volume_, poured_before_ + engine_->poured(), left_before_ + engine_->left(),
             sum(engine_->fields().depth) * grid_.cellArea()};
   }
 
@@ -316,6 +382,8 @@ class Simulator::Implementation {
   std::vector<Body> bodies_;
   std::vector<Pour> pours_;
   double start_volume_ = 0.0;
+  double poured_before_ = 0.0;  // before the snapshot from which this goes on [m³]
+  double left_before_ = 0.0;
   double time_ = 0.0;
   double trial_ =
       std::numeric_limits<double>::infinity();  // length of the next step unless something forbids it [s]
@@ -345,6 +413,9 @@ void Simulator::appendPose(std::size_t body, double time, const Eigen::Isometry3
   implementation_->appendPose(body, time, pose);
 }
 void Simulator::addPour(const Pour& pour) { implementation_->addPour(pour); }
+double Simulator::edit(const Edit& edit) { return implementation_->edit(edit); }
+Snapshot Simulator::snapshot() const { return implementation_->snapshot(); }
+void Simulator::restore(const Snapshot& snapshot) { implementation_->restore(snapshot); }
 void Simulator::advance(double duration) { implementation_->advance(duration); }
 double Simulator::time() const { return implementation_->time_; }
 

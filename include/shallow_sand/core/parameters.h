@@ -70,11 +70,39 @@ struct SolverParameters {
   void validate() const;  ///< @throws InvalidParameter
 };
 
-/// Sand that falls on a disc at a steady rate. Scene key `pours`.
+/// A part of the map, in the grid's frame.
+struct Region {
+  enum class Shape { disc, rectangle };
+  Shape shape = Shape::disc;
+  Eigen::Vector2d center{0.0, 0.0};  ///< [m]
+  double radius = 0.1;               ///< of a disc [m], positive
+  Eigen::Vector2d size{0.2, 0.2};    ///< of a rectangle, along x and y [m], positive
+
+  void validate() const;  ///< @throws InvalidParameter
+};
+
+/// What an edit does to the sand of each cell in its region.
+enum class EditOperation {
+  add,     ///< adds `value` metres
+  remove,  ///< takes `value` metres away, or all there is
+  set,     ///< makes the sand `value` metres deep
+  level    ///< fills or cuts to a surface `value` metres high; the bed stays
+};
+
+/// A change of the sand at one instant.
+struct Edit {
+  Region region;
+  EditOperation operation = EditOperation::add;
+  double value = 0.0;  ///< [m]; not negative unless the operation is `level`
+
+  void validate() const;  ///< @throws InvalidParameter
+};
+
+/// Sand that falls on a disc, or is taken from it, at a steady rate. Scene key `pours`.
 struct Pour {
   Eigen::Vector2d position{0.0, 0.0};                     ///< centre of the disc, in the grid's frame [m]
   double radius = 0.1;                                    ///< [m], positive
-  double rate = 0.0;                                      ///< [m³/s], not negative
+  double rate = 0.0;                                      ///< [m³/s]; negative takes away what is there
   double start = 0.0;                                     ///< [s]
   double stop = std::numeric_limits<double>::infinity();  ///< [s], after start
 

@@ -8,6 +8,7 @@
 #include "shallow_sand/device/instruction_set.h"
 #include "shallow_sand/device/window.h"
 #include "shallow_sand/sim/simulator.h"
+#include "shallow_sand/solver/change_sand.h"
 #include "shallow_sand/solver/sand_constants.h"
 #include "shallow_sand/solver/step.h"
 
@@ -26,9 +27,8 @@ class Engine {
   virtual ~Engine() = default;
 
   virtual void addBody(const DistanceField& field) = 0;
-  /// Adds a disc of sand; returns nothing, pours are numbered from 0. Lengths are relative to the corner of
-  /// cell (0, 0).
-  virtual void addPour(float center_x, float center_y, float radius) = 0;
+  /// Prepares a pour; pours are numbered from 0.
+  virtual void addPour(const LocalRegion& region) = 0;
 
   /// Casts the rays of these bodies.
   virtual void castRays(const std::vector<PlacedBody>& bodies) = 0;
@@ -39,13 +39,19 @@ class Engine {
   virtual float attempt(float dt) = 0;
   /// The last attempt becomes the state. Returns how many cells it computed.
   virtual long long accept() = 0;
-  /// Adds this volume [m³] through a pour.
+  /// Adds this volume [m³] through a pour; takes it away if it is negative, as far as there is some.
   virtual void pour(std::size_t number, double volume) = 0;
+  /// Changes the sand at once. Returns by how much it grew [m³].
+  virtual double edit(const LocalRegion& region, EditOperation operation, float value) = 0;
 
   virtual Fields fields() const = 0;
-  virtual double poured() const = 0;       ///< [m³]
-  virtual double left() const = 0;         ///< [m³]
+  virtual double poured() const = 0;       ///< by pours and edits [m³]
+  virtual double left() const = 0;         ///< over open edges, by pours and edits [m³]
   virtual double bodyOverlap() const = 0;  ///< at the last rays [m³]
+
+  virtual ContactSnapshot contacts() const = 0;
+  /// Goes on from fields and contacts that were taken from an engine like this one.
+  virtual void restore(const Fields& fields, const ContactSnapshot& contacts) = 0;
 };
 
 /// Every backend's engine starts from the same values. `fields` are those of a valid state.

@@ -9,7 +9,7 @@
 #include "shallow_sand/coupling/displacement.h"
 #include "shallow_sand/coupling/rays.h"
 #include "shallow_sand/sim/engine.h"
-#include "shallow_sand/solver/pour_sand.h"
+#include "shallow_sand/solver/change_sand.h"
 
 namespace shallow_sand {
 
@@ -57,25 +57,15 @@ class EngineOn : public Engine {
     if (contacts_.empty()) contacts_.emplace_back(grid_.cells());
   }
 
-  void addPour(float center_x, float center_y, float radius) override {
-    const auto cell = [&](float position) { return static_cast<int>(std::floor(position / grid_.spacing)); };
-    PourSand pour{};
-    pour.columns = grid_.columns;
-    pour.spacing = grid_.spacing;
-    pour.center_x = center_x;
-    pour.center_y = center_y;
-    // A disc between the centres of cells falls on the nearest ones.
-    pour.radius = std::max(radius, 0.71f * grid_.spacing);
-    pour.window = {std::max(cell(center_x - pour.radius), 0), std::max(cell(center_y - pour.radius), 0),
-                   std::min(cell(center_x + pour.radius) + 1, grid_.columns),
-                   std::min(cell(center_y + pour.radius) + 1, grid_.rows)};
-    std::size_t covered = 0;
-    for (int j = pour.window.row_begin; j < pour.window.row_end; ++j) {
-      for (int i = pour.window.column_begin; i < pour.window.column_end; ++i)
-        covered += pour.covers(i, j) ? 1 : 0;
+  void addPour(const LocalRegion& region) override {
+    PourOnBackend pour{changeOf(region), 0, Memory<double>(0)};
+    const Window& window = pour.change.window;
+    for (int j = window.row_begin; j < window.row_end; ++j) {
+      for (int i = window.column_begin; i < window.column_end; ++i)
+        pour.covered += pour.change.covers(i, j) ? 1 : 0;
     }
-    const std::size_t cells = static_cast<std::size_t>(pour.window.columns()) * pour.window.rows();
-    pours_.push_back({pour, covered, Memory<double>(cells, 0.0)});
+    pour.taken = Memory<double>(cellsOf(window), 0.0);
+    pours_.push_back(std::move(pour));
   }
 
   void castRays(const std::vector<PlacedBody>& bodies) override {
@@ -141,11 +131,24 @@ class EngineOn : public Engine {
 
   void pour(std::size_t number, double volume) override {
     PourOnBackend& p = pours_[number];
-    p.pour.depth = state_.depth.data();
-    p.pour.poured = p.poured.data();
-    p.pour.amount = static_cast<float>(volume / (static_cast<double>(p.covered) * grid_.cellArea()));
-    executor_.forEachCell(p.pour.window, p.pour);
-    stepper_.touch(p.pour.window);
+    const double depth = volume / (static_cast<double>(p.covered) * grid_.cellArea());
+    p.change.operation = volume < 0.0 ? EditOperation::remove : EditOperation::add;
+    p.change.value = static_cast<float>(std::abs(depth));
+    apply(p.change, p.taken);
+  }
+
+  double edit(const LocalRegion& region, EditOperation operation, float value) override {
+    ChangeSand change = changeOf(region);
+    change.operation = operation;
+    change.value = value;
+    Memory<double> taken(cellsOf(change.window), 0.0);
+    apply(change, taken);
+    double grown = 0.0;
+    for (const double depth : downloaded(taken)) {
+      grown += depth;
+      (depth > 0.0 ? edited_in_ : edited_out_) += std::abs(depth);
+    }
+    return grown * grid_.cellArea();
   }
 
   Fields fields() const override {
@@ -154,12 +157,16 @@ class EngineOn : public Engine {
   }
 
   double poured() const override {
-    double depth = 0.0;
-    for (const PourOnBackend& p : pours_) depth += sum(p.poured);
+    double depth = edited_in_;
+    for (const PourOnBackend& p : pours_) depth += std::max(sum(p.taken), 0.0);
     return depth * grid_.cellArea();
   }
 
-  double left() const override { return sum(left_) * grid_.cellArea(); }
+  double left() const override {
+    double depth = sum(left_) + edited_out_;
+    for (const PourOnBackend& p : pours_) depth += std::max(-sum(p.taken), 0.0);
+    return depth * grid_.cellArea();
+  }
 
   double bodyOverlap() const override {
     if (window_.empty()) return 0.0;
@@ -169,6 +176,33 @@ class EngineOn : public Engine {
       for (int i = window_.column_begin; i < window_.column_end; ++i) depth += overlap[grid_.index(i, j)];
     }
     return depth * grid_.cellArea();
+  }
+
+  ContactSnapshot contacts() const override {
+    ContactSnapshot snapshot;
+    snapshot.window = window_;
+    if (window_.empty()) return snapshot;
+    const Contacts& c = contacts_.front();
+    snapshot.ceiling = cut(downloaded(c.ceiling));
+    snapshot.length = cut(downloaded(c.length));
+    snapshot.velocity_x = cut(downloaded(c.velocity_x));
+    snapshot.velocity_y = cut(downloaded(c.velocity_y));
+    return snapshot;
+  }
+
+  void restore(const Fields& fields, const ContactSnapshot& contacts) override {
+    bed_ = uploaded(fields.bed);
+    state_ = uploadedState(fields);
+    next_ = uploadedState(fields);
+    stepper_.touch(Window::all(grid_));
+    window_ = contacts.window;
+    if (contacts_.empty()) return;
+    contacts_.front() = Contacts(grid_.cells());
+    Contacts& c = contacts_.front();
+    pasteInto(c.ceiling, contacts.ceiling);
+    pasteInto(c.length, contacts.length);
+    pasteInto(c.velocity_x, contacts.velocity_x);
+    pasteInto(c.velocity_y, contacts.velocity_y);
   }
 
  private:
@@ -200,18 +234,61 @@ class EngineOn : public Engine {
   };
 
   struct PourOnBackend {
-    PourSand pour;
+    ChangeSand change;
     std::size_t covered;
-    Memory<double> poured;
+    Memory<double> taken;
   };
+
+  /// A change without operation, value and memory.
+  ChangeSand changeOf(const LocalRegion& region) const {
+    ChangeSand change{};
+    change.columns = grid_.columns;
+    change.spacing = grid_.spacing;
+    change.region = region;
+    change.window = windowOf(region, grid_);
+    return change;
+  }
+
+  void apply(ChangeSand change, Memory<double>& taken) {
+    change.depth = state_.depth.data();
+    change.momentum_x = state_.momentum_x.data();
+    change.momentum_y = state_.momentum_y.data();
+    change.bed = bed_.data();
+    change.taken = taken.data();
+    executor_.forEachCell(change.window, change);
+    stepper_.touch(change.window);
+  }
+
+  static std::size_t cellsOf(const Window& window) {
+    return static_cast<std::size_t>(window.columns()) * static_cast<std::size_t>(window.rows());
+  }
+
+  /// The part of a field that lies in window_, row-major.
+  std::vector<float> cut(const std::vector<float>& field) const {
+    std::vector<float> part;
+    for (int j = window_.row_begin; j < window_.row_end; ++j) {
+      const auto row = field.begin() + static_cast<std::ptrdiff_t>(grid_.index(0, j));
+      part.insert(part.end(), row + window_.column_begin, row + window_.column_end);
+    }
+    return part;
+  }
+  void pasteInto(Memory<float>& field, const std::vector<float>& part) const {
+    std::vector<float> values = downloaded(field);
+    auto row = part.begin();
+    for (int j = window_.row_begin; j < window_.row_end; ++j, row += window_.columns())
+      std::copy_n(row, window_.columns(),
+                  values.begin() + static_cast<std::ptrdiff_t>(grid_.index(window_.column_begin, j)));
+    field.upload(values.data(), values.size());
+  }
 
   static Memory<float> uploaded(const std::vector<float>& values) {
     Memory<float> memory(values.size());
     memory.upload(values.data(), values.size());
     return memory;
   }
-  static std::vector<float> downloaded(const Memory<float>& memory) {
-    std::vector<float> values(memory.size());
+  template <class T>
+  static std::vector<T> downloaded(const Memory<T>& memory) {
+    std::vector<T> values(memory.size());
     memory.download(values.data(), values.size());
     return values;
   }
@@ -249,8 +326,7 @@ class EngineOn : public Engine {
   }
 
   static double sum(const Memory<double>& memory) {
-    std::vector<double> values(memory.size());
-    memory.download(values.data(), values.size());
+    const std::vector<double> values = downloaded(memory);
     return std::accumulate(values.begin(), values.end(), 0.0);
   }
 
@@ -268,6 +344,8 @@ class EngineOn : public Engine {
   Memory<float> layer_depth_;
   Memory<double> left_;
   std::vector<PourOnBackend> pours_;
+  double edited_in_ = 0.0;  // depth, summed over cells [m]
+  double edited_out_ = 0.0;
   std::vector<Memory<float>> distance_fields_;
   std::vector<Contacts> contacts_;       // none or one: maps without bodies need none
   std::vector<Memory<BodyView>> views_;  // none or one

@@ -11,6 +11,7 @@
 #include "shallow_sand/core/fields.h"
 #include "shallow_sand/core/parameters.h"
 #include "shallow_sand/device/instruction_set.h"
+#include "shallow_sand/device/window.h"
 
 namespace shallow_sand {
 
@@ -39,8 +40,8 @@ struct SimulatorParameters {
 /// Where the sand went, summed in double precision. [m³]
 struct Ledger {
   double start = 0.0;
-  double poured = 0.0;  ///< through pours
-  double left = 0.0;    ///< over open edges
+  double poured = 0.0;  ///< came through pours and edits
+  double left = 0.0;    ///< went over open edges, through pours with a negative rate and edits
   double now = 0.0;
   /// |now − (start + poured − left)| / (start + poured); 0 when there never was sand.
   double error() const;
@@ -51,6 +52,28 @@ struct Progress {
   std::uint64_t cell_updates = 0;    ///< cells that were computed; those that sleep are not
   std::uint64_t repeated_steps = 0;  ///< attempts that proved too long for the speeds they met
   double last_step = 0.0;            ///< [s]
+};
+
+/// What the last rays found in the columns that bodies may touch; row-major over the window, which is empty
+/// if there are none. A run goes on from it, for rays see the sand as it was before bodies pushed it away.
+struct ContactSnapshot {
+  Window window;
+  std::vector<float> ceiling;     ///< depth of sand that fits under a body, infinite without one [m]
+  std::vector<float> length;      ///< of the body within the sand [m]
+  std::vector<float> velocity_x;  ///< of the body [m/s]
+  std::vector<float> velocity_y;
+};
+
+/// Everything that a run needs to go on bit for bit, besides what it was built from: parameters, material,
+/// pours, bodies and their motion.
+struct Snapshot {
+  Fields fields;
+  ContactSnapshot contacts;
+  bool bodies_cleared = false;  ///< sand was moved out of all bodies that have a pose
+  double time = 0.0;            ///< [s]
+  double next_step = 0.0;       ///< length that would be tried next [s], may be infinite
+  Progress progress;
+  Ledger ledger;
 };
 
 /// The one façade over the solver, its bodies and its backends. Not thread-safe; several may live in one
@@ -80,6 +103,15 @@ class Simulator {
   void appendPose(std::size_t body, double time, const Eigen::Isometry3d& pose);
   /// @throws InvalidParameter
   void addPour(const Pour& pour);
+
+  /// Changes the sand of a region now. Returns by how much it grew [m³]; the ledger counts it as poured or
+  /// left. @throws InvalidParameter also if the region lies outside of the grid
+  double edit(const Edit& edit);
+
+  Snapshot snapshot() const;
+  /// Goes on from a snapshot of a simulator that was built from the same parameters, pours and bodies: with
+  /// the same bits. @throws InvalidParameter if it does not fit
+  void restore(const Snapshot& snapshot);
 
   /// Runs the sand on by `duration` [s] exactly. @throws InvalidParameter when negative, not finite, or when
   /// a fixed step breaks its bound

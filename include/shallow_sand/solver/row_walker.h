@@ -333,17 +333,19 @@ class RowWalker {
   void report(int j) {
     const int tile_row = tiles_.tileOfRow(j);
     const Window row = tiles_.cellsOf(0, tile_row);
+    const int first = tiles_.tileOfColumn(column_);
+    const int last = tiles_.tileOfColumn(cells_.column_end - 1);
+    if (j == row.row_begin) {
+      for (int column = first; column <= last; ++column) tiles_.activity(column, tile_row) = TileActivity{};
+    }
     const bool southern = j == row.row_begin + Tiles::kReach - 1;
     const bool middle = j == row.row_end - Tiles::kReach - 1;
     const bool northern = j == row.row_end - 1;
     if (!southern && !middle && !northern) return;
-    const bool first_report = southern || row.rows() < Tiles::kReach;
-    const int last = tiles_.tileOfColumn(cells_.column_end - 1);
-    for (int column = tiles_.tileOfColumn(cells_.column_begin); column <= last; ++column) {
+    for (int column = first; column <= last; ++column) {
       const Window tile = tiles_.cellsOf(column, tile_row);
-      TileActivity& found = tiles_.activity(column, tile_row);
-      if (first_report) found = TileActivity{};
-      add(found, tile.column_begin - column_, tile.column_end - column_, southern, northern);
+      add(tiles_.activity(column, tile_row), tile.column_begin - column_, tile.column_end - column_, southern,
+          northern);
     }
     std::fill_n(motion_, end_, 0.0f);
     std::fill_n(speed_, end_, 0.0f);

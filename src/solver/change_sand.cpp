@@ -1,0 +1,30 @@
+#include "shallow_sand/solver/change_sand.h"
+
+#include <algorithm>
+
+namespace shallow_sand {
+
+LocalRegion localRegion(const Region& region, const Grid& grid) {
+  LocalRegion local{};
+  local.center_x = static_cast<float>(region.center.x() - grid.origin_x);
+  local.center_y = static_cast<float>(region.center.y() - grid.origin_y);
+  // What lies between the centres of cells is taken as the nearest ones.
+  const bool disc = region.shape == Region::Shape::disc;
+  local.radius = disc ? std::max(static_cast<float>(region.radius), 0.71f * grid.spacing) : -1.0f;
+  local.half_x = std::max(static_cast<float>(0.5 * region.size.x()), 0.51f * grid.spacing);
+  local.half_y = std::max(static_cast<float>(0.5 * region.size.y()), 0.51f * grid.spacing);
+  return local;
+}
+
+Window windowOf(const LocalRegion& region, const Grid& grid) {
+  const auto cell = [&](float position, int count) {
+    return static_cast<int>(std::clamp(std::floor(position / grid.spacing), 0.0f, static_cast<float>(count)));
+  };
+  const float x = region.radius >= 0.0f ? region.radius : region.half_x;
+  const float y = region.radius >= 0.0f ? region.radius : region.half_y;
+  return {cell(region.center_x - x, grid.columns), cell(region.center_y - y, grid.rows),
+          cell(region.center_x + x + grid.spacing, grid.columns),
+          cell(region.center_y + y + grid.spacing, grid.rows)};
+}
+
+}  // namespace shallow_sand
