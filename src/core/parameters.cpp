@@ -49,7 +49,7 @@ int cellsAlong(const std::string& key, double size, double spacing) {
 
 InvalidParameter::InvalidParameter(const std::string& key, const std::string& found,
                                    const std::string& expected)
-    : std::runtime_error(key + ": " + found + "; expected " + expected) {}
+    : std::runtime_error(key + ": " + found + "; expected " + expected), expected_(expected) {}
 
 void GridParameters::validate() const {
   requirePositive("grid.spacing", spacing, "metres");

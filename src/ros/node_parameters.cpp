@@ -75,7 +75,9 @@ NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
   takeBetween(yaml, source, "tf_timeout", 0.001, 1e6, "seconds", parameters.tf_timeout);
   std::string sand_frame;
   take(yaml, source, "sand_frame", "the name of a tf frame", sand_frame);
-  parameters.scene = readScene(yaml, source);
+  std::string scene_folder;
+  take(yaml, source, "scene_folder", "the path of a folder", scene_folder);
+  parameters.scene = readScene(yaml, source, scene_folder);
   if (!sand_frame.empty()) parameters.scene.parameters.grid.frame = sand_frame;
   return parameters;
 }

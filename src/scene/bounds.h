@@ -14,6 +14,8 @@ inline constexpr Bound finite{[](double v) { return std::abs(v) <= 1e9; },
                               "a finite number, at most 1e9 in size"};
 inline constexpr Bound finite_or_infinite{[](double v) { return std::abs(v) <= 1e9 || std::isinf(v); },
                                           "a number, at most 1e9 in size, or .inf"};
+inline constexpr Bound error_or_finite{[](double v) { return std::abs(v) <= 1e9; },
+                                       "error, or a number, at most 1e9 in size"};
 inline constexpr Bound positive{[](double v) { return v >= 1e-9 && v <= 1e9; }, "a number from 1e-9 to 1e9"};
 inline constexpr Bound not_negative{[](double v) { return v >= 0.0 && v <= 1e9; }, "a number from 0 to 1e9"};
 inline constexpr Bound slope_angle{[](double v) { return v > 0.0 && v < 90.0; },

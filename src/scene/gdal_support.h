@@ -4,6 +4,7 @@
 #include <gdal_priv.h>
 
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -16,7 +17,8 @@ namespace shallow_sand {
 class QuietGdal {
  public:
   QuietGdal() {
-    GDALAllRegister();
+    static std::once_flag registered;
+    std::call_once(registered, [] { GDALAllRegister(); });
     CPLPushErrorHandler(CPLQuietErrorHandler);
     CPLErrorReset();
   }

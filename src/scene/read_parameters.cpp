@@ -14,20 +14,6 @@ GridParameters readGrid(const SceneValue& grid) {
   return parameters;
 }
 
-Material readMaterial(const SceneValue& material) {
-  material.requireMap({"friction_angle", "dilute_layer"});
-  Material parameters;
-  if (const auto angle = material.find("friction_angle")) {
-    parameters.friction_angle = radians(angle->number(bounds::finite));
-  }
-  if (const auto layer = material.find("dilute_layer")) {
-    layer->requireMap({"fraction", "depth"});
-    layer->read("fraction", bounds::finite, parameters.layer_fraction);
-    layer->read("depth", bounds::finite_or_infinite, parameters.layer_depth);
-  }
-  return parameters;
-}
-
 void readEdge(const SceneValue& edges, const std::string& side, Edge& edge) {
   if (const auto value = edges.find(side)) {
     const std::string kind = value->text();

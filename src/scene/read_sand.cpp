@@ -32,11 +32,20 @@ SandLayer readCone(const SceneValue& cone) {
                    std::tan(radians(cone.at("slope_angle").number(bounds::slope_angle))));
 }
 
-SandLayer readLayer(const SceneValue& entry) {
-  if (const auto file = entry.find("file")) {
-    file->fail("file", "depth, surface, cylinder, box or cone (terrain files are not available yet)");
+SandLayer readFile(const SceneValue& entry, const Grid& grid) {
+  std::vector<float> values = readTerrain(entry, grid, {"as"});
+  const SceneValue as = entry.at("as");
+  if (!as.is("surface") && !as.is("depth")) {
+    as.fail("surface or depth");
   }
-  const std::string kind = entry.requireOneOf({"depth", "surface", "cylinder", "box", "cone"});
+  return as.is("surface") ? fillToSurfaces(std::move(values)) : unevenLayer(std::move(values));
+}
+
+SandLayer readLayer(const SceneValue& entry, const Grid& grid) {
+  if (entry.find("file")) {
+    return readFile(entry, grid);
+  }
+  const std::string kind = entry.requireOneOf({"depth", "surface", "cylinder", "box", "cone", "file"});
   const SceneValue value = entry.at(kind);
   if (kind == "depth") {
     return evenLayer(value.number(bounds::finite));
@@ -60,14 +69,14 @@ SandLayer readLayer(const SceneValue& entry) {
 }
 
 /// Depth of the sand at one cell after all layers. Sums that should be nothing may miss it by rounding.
-double depthAt(const Eigen::Vector2d& centre, double bed, const std::vector<SandLayer>& layers,
+double depthAt(const Column& column, const std::vector<SandLayer>& layers,
                const std::vector<SceneValue>& entries) {
   constexpr double rounding = 1e-9;
   double depth = 0.0;
   for (std::size_t k = 0; k < layers.size(); ++k) {
-    const double next = layers[k](centre, bed, depth);
+    const double next = layers[k](column, depth);
     if (next < -rounding) {
-      failNegative(entries[k], centre, depth, next);
+      failNegative(entries[k], column.centre, depth, next);
     }
     depth = std::max(0.0, next);
   }
@@ -80,10 +89,10 @@ std::vector<float> readBed(const SceneValue& root, const Grid& grid) {
   double elevation = 0.0;
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();
   if (const auto bed = root.find("bed")) {
-    if (const auto file = bed->find("file")) {
-      file->fail("file", "elevation and slope (terrain files are not available yet)");
+    if (bed->find("file")) {
+      return readTerrain(*bed, grid);
     }
-    bed->requireMap({"elevation", "slope"});
+    bed->requireMap({"elevation", "slope", "file"});
     bed->read("elevation", bounds::finite, elevation);
     bed->read("slope", bounds::finite, slope);
   }
@@ -105,12 +114,13 @@ std::vector<float> readSand(const SceneValue& root, const Grid& grid, const std:
   }
   const std::vector<SceneValue> entries = list->items();
   std::vector<SandLayer> layers;
-  std::transform(entries.begin(), entries.end(), std::back_inserter(layers), readLayer);
+  std::transform(entries.begin(), entries.end(), std::back_inserter(layers),
+                 [&grid](const SceneValue& entry) { return readLayer(entry, grid); });
   for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i) {
       const std::size_t cell = grid.index(i, j);
-      const Eigen::Vector2d centre(grid.x(i), grid.y(j));
-      depth[cell] = static_cast<float>(depthAt(centre, static_cast<double>(bed[cell]), layers, entries));
+      const Column column{cell, {grid.x(i), grid.y(j)}, static_cast<double>(bed[cell])};
+      depth[cell] = static_cast<float>(depthAt(column, layers, entries));
     }
   }
   return depth;

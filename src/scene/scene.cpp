@@ -17,17 +17,18 @@ Scene loadScene(const std::string& path) {
     throw SceneError(path + ": cannot be read; expected a scene file");
   }
   try {
-    Scene scene = readScene(YAML::Load(file), path);
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    Scene scene = readScene(YAML::Load(file), path, folder.empty() ? "." : folder);
     scene.name = std::filesystem::path(path).stem().string();
     return scene;
   } catch (const YAML::Exception& error) {
     const std::string line = error.mark.is_null() ? "" : ":" + std::to_string(error.mark.line + 1);
-    throw SceneError(path + line + ": not valid YAML (" + error.msg + "); expected a scene");
+    throw SceneError(oneLine(path + line + ": not valid YAML (" + error.msg + "); expected a scene"));
   }
 }
 
-Scene readScene(const YAML::Node& root_node, const std::string& source_name) {
-  const SceneValue root(root_node, source_name);
+Scene readScene(const YAML::Node& root_node, const std::string& source_name, const std::string& folder) {
+  const SceneValue root(root_node, {source_name, folder});
   root.requireMap({"grid", "gravity", "material", "edges", "bed", "sand", "pours", "bodies", "solver",
                    "duration", "backend", "threads"});
   Scene scene;
@@ -38,6 +39,7 @@ Scene readScene(const YAML::Node& root_node, const std::string& source_name) {
   scene.pours = readPours(root);
   scene.bodies = readBodies(root);
   const Grid grid = scene.parameters.grid.grid();
+  scene.material_fields = readMaterialFields(root, grid);
   scene.bed = readBed(root, grid);
   scene.depth = readSand(root, grid, scene.bed);
   return scene;

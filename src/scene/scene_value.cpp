@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numeric>
 #include <set>
 
@@ -9,13 +10,6 @@
 
 namespace shallow_sand {
 namespace {
-
-/// Errors are one line, whatever the file holds.
-std::string oneLine(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
-  return text;
-}
 
 std::string shortened(const std::string& text) {
   constexpr std::size_t kLongest = 60;
@@ -78,12 +72,18 @@ YAML::Mark markBelow(const YAML::Node& node, const std::string& path) {
 
 }  // namespace
 
-SceneValue::SceneValue(const YAML::Node& node, const std::string& source_name)
-    : SceneValue(node, "", std::make_shared<const std::string>(source_name)) {}
+std::string oneLine(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+  return text;
+}
 
-SceneValue::SceneValue(const YAML::Node& node, const std::string& path,
-                       std::shared_ptr<const std::string> source_name)
-    : node_(node), path_(path), source_name_(std::move(source_name)) {}
+SceneValue::SceneValue(const YAML::Node& node, const SceneSource& source)
+    : SceneValue(node, "", std::make_shared<const SceneSource>(source)) {}
+
+SceneValue::SceneValue(const YAML::Node& node, const std::string& place,
+                       std::shared_ptr<const SceneSource> source)
+    : node_(node), place_(place), source_(std::move(source)) {}
 
 void SceneValue::requireMap(const std::vector<std::string>& known) const {
   if (!node_.IsMap()) {
@@ -96,8 +96,7 @@ void SceneValue::requireMap(const std::vector<std::string>& known) const {
       failUnknown(entry.first, known);
     }
     if (!seen.insert(entry.first.Scalar()).second) {
-      SceneValue(entry.first, pathOf(entry.first.Scalar()), source_name_)
-          .fail("given twice", "this key once");
+      SceneValue(entry.first, placeOf(entry.first.Scalar()), source_).fail("given twice", "this key once");
     }
   }
 }
@@ -114,14 +113,14 @@ std::optional<SceneValue> SceneValue::find(const std::string& key) const {
   if (!node_.IsMap() || !node_[key].IsDefined()) {
     return std::nullopt;
   }
-  return SceneValue(node_[key], pathOf(key), source_name_);
+  return SceneValue(node_[key], placeOf(key), source_);
 }
 
 SceneValue SceneValue::at(const std::string& key) const {
   if (const auto value = find(key)) {
     return *value;
   }
-  SceneValue(node_, pathOf(key), source_name_).fail("missing", "this key");
+  SceneValue(node_, placeOf(key), source_).fail("missing", "this key");
 }
 
 std::vector<SceneValue> SceneValue::items() const {
@@ -130,7 +129,7 @@ std::vector<SceneValue> SceneValue::items() const {
   }
   std::vector<SceneValue> result;
   for (const YAML::Node& item : node_) {
-    result.push_back(SceneValue(item, path_ + "[" + std::to_string(result.size()) + "]", source_name_));
+    result.push_back(SceneValue(item, place_ + "[" + std::to_string(result.size()) + "]", source_));
   }
   return result;
 }
@@ -147,6 +146,14 @@ std::string SceneValue::text() const {
     fail("a text");
   }
   return node_.Scalar();
+}
+
+std::string SceneValue::path() const {
+  const std::filesystem::path path = text();
+  if (path.is_relative() && source_->folder.empty()) {
+    fail("an absolute path, as this scene lies in no folder");
+  }
+  return (source_->folder / path).string();
 }
 
 double SceneValue::number(const Bound& bound) const {
@@ -174,27 +181,27 @@ void SceneValue::read(const std::string& key, std::string& target) const {
 void SceneValue::fail(const std::string& expected) const { fail(describe(node_), expected); }
 
 void SceneValue::fail(const std::string& found, const std::string& expected) const {
-  const std::string prefix = path_.empty() ? "" : path_ + ": ";
+  const std::string prefix = place_.empty() ? "" : place_ + ": ";
   raise(node_.Mark(), prefix + found + "; expected " + expected);
 }
 
 void SceneValue::failBelow(const std::string& message) const {
-  raise(markBelow(node_, message.substr(0, message.find(": "))), pathOf(message));
+  raise(markBelow(node_, message.substr(0, message.find(": "))), placeOf(message));
 }
 
 void SceneValue::raise(const YAML::Mark& mark, const std::string& message) const {
   const std::string line = mark.is_null() ? "" : ":" + std::to_string(mark.line + 1);
-  throw SceneError(oneLine(*source_name_ + line + ": " + message));
+  throw SceneError(oneLine(source_->name + line + ": " + message));
 }
 
-std::string SceneValue::pathOf(const std::string& key) const {
-  return path_.empty() ? key : path_ + "." + key;
+std::string SceneValue::placeOf(const std::string& key) const {
+  return place_.empty() ? key : place_ + "." + key;
 }
 
 void SceneValue::failUnknown(const YAML::Node& key, const std::vector<std::string>& known) const {
   const std::string name = describe(key);
   const std::string meant = nearest(name, known);
-  SceneValue(key, pathOf(name), source_name_)
+  SceneValue(key, placeOf(name), source_)
       .fail("unknown key" + (meant.empty() ? "" : " (did you mean " + meant + "?)"),
             "one of: " + listed(known));
 }

@@ -18,11 +18,20 @@ struct Bound {
   const char* expected;
 };
 
+/// The text with blanks for all that is no part of a line: errors are one, whatever the file holds.
+std::string oneLine(std::string text);
+
+/// Where a scene comes from.
+struct SceneSource {
+  std::string name;    ///< the file, or what stands for it in errors
+  std::string folder;  ///< that paths in the scene start from; empty: they must be absolute
+};
+
 /// One value of a scene with its place in it. Every way to read it either gives what was asked for or throws
 /// a SceneError that names the place.
 class SceneValue {
  public:
-  SceneValue(const YAML::Node& node, const std::string& source_name);
+  SceneValue(const YAML::Node& node, const SceneSource& source);
 
   /// Refuses anything but a map whose keys all are among `known`, each given once.
   void requireMap(const std::vector<std::string>& known) const;
@@ -35,6 +44,10 @@ class SceneValue {
   std::vector<SceneValue> items(std::size_t count, const std::string& expected) const;
 
   std::string text() const;
+  /// The path of a file, from the scene's folder on if it is not absolute.
+  std::string path() const;
+  bool isMap() const { return node_.IsMap(); }
+  bool is(const std::string& word) const { return node_.IsScalar() && node_.Scalar() == word; }
   double number(const Bound& bound) const;
   template <int size>
   Eigen::Matrix<double, size, 1> vector(const Bound& bound) const {
@@ -70,16 +83,16 @@ class SceneValue {
   }
 
  private:
-  SceneValue(const YAML::Node& node, const std::string& path, std::shared_ptr<const std::string> source_name);
-  std::string pathOf(const std::string& key) const;
+  SceneValue(const YAML::Node& node, const std::string& place, std::shared_ptr<const SceneSource> source);
+  std::string placeOf(const std::string& key) const;
   /// `message` begins with its key and ": ".
   [[noreturn]] void failBelow(const std::string& message) const;
   [[noreturn]] void raise(const YAML::Mark& mark, const std::string& message) const;
   [[noreturn]] void failUnknown(const YAML::Node& key, const std::vector<std::string>& known) const;
 
   YAML::Node node_;
-  std::string path_;  ///< as in "bodies[0].shape"; empty for the whole scene
-  std::shared_ptr<const std::string> source_name_;
+  std::string place_;  ///< as in "bodies[0].shape"; empty for the whole scene
+  std::shared_ptr<const SceneSource> source_;
 };
 
 }  // namespace shallow_sand

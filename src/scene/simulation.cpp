@@ -24,7 +24,8 @@ void addBody(Simulator& simulator, const SceneBody& body) {
 Simulator buildSimulator(Scene scene) {
   std::string about;
   try {
-    Simulator simulator(scene.parameters, std::move(scene.bed), std::move(scene.depth));
+    Simulator simulator(scene.parameters, std::move(scene.bed), std::move(scene.depth),
+                        scene.material_fields);
     for (std::size_t k = 0; k < scene.pours.size(); ++k) {
       about = "pours[" + std::to_string(k) + "].";
       simulator.addPour(scene.pours[k]);

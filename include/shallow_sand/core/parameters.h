@@ -14,6 +14,10 @@ namespace shallow_sand {
 class InvalidParameter : public std::runtime_error {
  public:
   InvalidParameter(const std::string& key, const std::string& found, const std::string& expected);
+  const std::string& expected() const { return expected_; }
+
+ private:
+  std::string expected_;
 };
 
 /// Where the sand is. Scene key `grid`.

@@ -42,6 +42,7 @@ struct Scene {
   SimulatorParameters parameters;
   std::vector<float> bed;    ///< elevation, laid out as in Fields [m]
   std::vector<float> depth;  ///< of the sand, laid out as in Fields; not negative [m]
+  MaterialFields material_fields;
   std::vector<Pour> pours;
   std::vector<SceneBody> bodies;
   double duration = 10.0;  ///< [s], not negative
@@ -52,7 +53,8 @@ Scene loadScene(const std::string& path);
 
 /// Reads a scene from a map with the same keys, from wherever it comes.
 /// @param source_name stands for the file in errors, and is the scene's name too
+/// @param folder that paths in the scene start from; empty: they must be absolute
 /// @throws SceneError
-Scene readScene(const YAML::Node& root, const std::string& source_name);
+Scene readScene(const YAML::Node& root, const std::string& source_name, const std::string& folder = "");
 
 }  // namespace shallow_sand
