@@ -1,0 +1,104 @@
+#include <gtest/gtest.h>
+
+#include "figures.h"
+#include "scene_run.h"
+
+namespace shallow_sand {
+namespace {
+
+constexpr double kLength = 0.2;  // of the column, L₀ [m]
+
+/// A column a times as high as it is long.
+struct Column {
+  double a;
+  bool dilute;  ///< the layer that flows is min(0.8 h, a quarter of the height), as in the paper's flume
+
+  double height() const { return a * kLength; }
+  std::string name() const {
+    char text[80];
+    std::snprintf(text, sizeof text, "column, a = %g, %s", a,
+                  dilute ? "layer min(0.8 h, h₀/4)" : "layer = whole depth");
+    return text;
+  }
+  YAML::Node scene(double spacing) const {
+    YAML::Node scene = channelFile("column", spacing);
+    scene["grid"]["size"][0] = kLength * (1.0 + 4.0 * a);
+    scene["sand"][0]["box"]["depth"] = height();
+    if (dilute) {
+      scene["material"]["dilute_layer"]["fraction"] = 0.8;
+      scene["material"]["dilute_layer"]["depth"] = 0.25 * height();
+    }
+    return scene;
+  }
+  /// How far sand ran that is `part` of the column's height deep, in lengths of the column.
+  double runout(const Profile& deposit, double part) const {
+    return deposit.reach(part * height()) / kLength - 1.0;
+  }
+};
+
+Profile ours(const Column& column, double spacing) {
+  Simulator simulator = simulatorOf(column.scene(spacing));
+  runToRest(simulator, 3.0);
+  return profileOf(simulator);
+}
+
+Profile reference(const Column& column) {
+  LagrangianSand sand(
+      lawOf(simulatorOf(column.scene(0.05 * column.height()))), gradedNodes(0.0, kLength, 400),
+      [&](double) { return column.height(); }, true, false);
+  EXPECT_TRUE(sand.advanceToRest(5.0));
+  return sand.profile();
+}
+
+class ColumnCollapse : public ::testing::Test {
+ protected:
+  static FigureLog& log() {
+    static FigureLog log("column");
+    return log;
+  }
+
+  /// With 20, 40 and 80 cells in the column's height. @returns whether its run-out is what laboratories found
+  bool validate(const Column& column) {
+    const Profile exact = reference(column);
+    std::vector<double> spacings;
+    std::vector<double> errors;
+    Profile deposit;
+    for (const double cells : {20.0, 40.0, 80.0}) {
+      spacings.push_back(column.height() / cells);
+      deposit = ours(column, spacings.back());
+      errors.push_back(relativeDifference(deposit, exact));
+    }
+    const std::string curve =
+        std::to_string(static_cast<int>(100.0 * column.a)) + (column.dilute ? "_dilute" : "_whole");
+    log().curve(curve + "_reference", "x,depth", exact.x, exact.depth);
+    log().curve(curve + "_ours", "x,depth", deposit.x, deposit.depth);
+    log().converges(column.name(), "deposit, relative L1 error", spacings, errors);
+    log().near({column.name(), "h_end/L₀, cells of h₀/80", "", exact.depth.front() / kLength,
+                deposit.depth.front() / kLength},
+               0.02 * column.a, "2 % of h₀");
+    const double toe = column.runout(exact, 0.01);
+    log().tell(
+        {column.name(), "run-out/L₀ of 1 % of h₀, cells of h₀/80", "", toe, column.runout(deposit, 0.01)},
+        "less than a cell deep");
+    const double runout = column.runout(exact, 0.05);
+    const Figure figure{column.name(), "run-out/L₀ of 5 % of h₀, cells of h₀/80", "", runout,
+                        column.runout(deposit, 0.05)};
+    log().near(figure, 0.05 * runout, "5 %");
+    return log().compare(figure, 1.2 * column.a, 1.8 * column.a,
+                         "1.2 a (Lube et al. 2005) to 1.8 a (Lajeunesse et al. 2005)");
+  }
+};
+
+const std::vector<double> kRatios = {0.25, 0.5, 1.0, 2.0};
+
+TEST_F(ColumnCollapse, WholeDepthFlows) {
+  for (const double a : kRatios) validate({a, false});
+}
+
+/// With a thinner layer the run-out is that of laboratories, too, where columns are no higher than long.
+TEST_F(ColumnCollapse, DiluteLayerFlows) {
+  for (const double a : kRatios) EXPECT_TRUE(validate({a, true}) || a > 1.0) << "a = " << a;
+}
+
+}  // namespace
+}  // namespace shallow_sand
