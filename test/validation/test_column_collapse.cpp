@@ -57,7 +57,8 @@ class ColumnCollapse : public ::testing::Test {
     return log;
   }
 
-  /// With 20, 40 and 80 cells in the column's height. @returns whether its run-out is what laboratories found
+  /// With 20, 40 and 80 cells in the column's height. @returns whether its run-out, read at 5 % of
+  /// h₀, is what laboratories found
   bool validate(const Column& column) {
     const Profile exact = reference(column);
     std::vector<double> spacings;
@@ -73,19 +74,21 @@ class ColumnCollapse : public ::testing::Test {
     log().curve(curve + "_reference", "x,depth", exact.x, exact.depth);
     log().curve(curve + "_ours", "x,depth", deposit.x, deposit.depth);
     log().converges(column.name(), "deposit, relative L1 error", spacings, errors);
-    log().near({column.name(), "h_end/L₀, cells of h₀/80", "", exact.depth.front() / kLength,
+    log().near({column.name(), "height at the wall / L₀", "", exact.depth.front() / kLength,
                 deposit.depth.front() / kLength},
                0.02 * column.a, "2 % of h₀");
-    const double toe = column.runout(exact, 0.01);
-    log().tell(
-        {column.name(), "run-out/L₀ of 1 % of h₀, cells of h₀/80", "", toe, column.runout(deposit, 0.01)},
-        "less than a cell deep");
-    const double runout = column.runout(exact, 0.05);
-    const Figure figure{column.name(), "run-out/L₀ of 5 % of h₀, cells of h₀/80", "", runout,
-                        column.runout(deposit, 0.05)};
-    log().near(figure, 0.05 * runout, "5 %");
-    return log().compare(figure, 1.2 * column.a, 1.8 * column.a,
-                         "1.2 a (Lube et al. 2005) to 1.8 a (Lajeunesse et al. 2005)");
+    bool as_in_laboratories = false;
+    for (const double part : {0.01, 0.05}) {
+      const double runout = column.runout(exact, part);
+      const Figure figure{
+          column.name(), part == 0.01 ? "run-out / L₀, read at 1 % of h₀" : "run-out / L₀, read at 5 % of h₀",
+          "", runout, column.runout(deposit, part)};
+      // Sand 1 % of h₀ deep is less than a cell deep.
+      if (part == 0.05) log().near(figure, 0.05 * runout, "5 %");
+      as_in_laboratories = log().compare(figure, 1.2 * column.a, 1.8 * column.a,
+                                         "1.2 a (Lube et al. 2005) to 1.8 a (Lajeunesse et al. 2005)");
+    }
+    return as_in_laboratories;
   }
 };
 

@@ -75,6 +75,17 @@ double relativeDifference(const Simulator& simulator, const Profile& reference) 
   return error / total;
 }
 
+/// Run-outs, in radii, that laboratories found.
+struct Band {
+  double least;  ///< Lajeunesse et al. 2004
+  double most;   ///< the same for low cylinders, Lube et al. 2004 for others
+};
+
+Band laboratories(double a) {
+  const double lube = a < 1.7 ? 1.24 * a : 1.6 * std::sqrt(a);
+  return a < 0.74 ? Band{a, 1.35 * a} : Band{2.0 * std::sqrt(a) - 1.0, lube};
+}
+
 class CylinderCollapse : public ::testing::Test {
  protected:
   static FigureLog& log() {
@@ -82,33 +93,49 @@ class CylinderCollapse : public ::testing::Test {
     return log;
   }
 
-  void validate(const Cylinder& cylinder) {
+  /// @returns whether its run-out, read at 5 % of h₀, is what laboratories found
+  bool validate(const Cylinder& cylinder) {
     const Profile exact = reference(cylinder);
     const std::vector<double> spacings = {0.02, 0.01, 0.005};
     std::vector<double> errors;
+    Profile along;
+    Profile diagonal;
     for (const double spacing : spacings) {
       Simulator simulator = simulatorOf(cylinder.scene(spacing));
       runToRest(simulator, 3.0);
       errors.push_back(relativeDifference(simulator, exact));
-      const Profile along = profileOf(simulator);
-      const Profile diagonal = diagonalOf(simulator);
-      std::printf(
-          "%s, spacing %.4f m: run-out at 5 %% %.3f (diagonal %.3f), at 1 %% %.3f (%.3f), middle %.4f; exact "
-          "%.3f %.3f %.4f\n",
-          cylinder.name().c_str(), spacing, cylinder.runout(along, 0.05), cylinder.runout(diagonal, 0.05),
-          cylinder.runout(along, 0.01), cylinder.runout(diagonal, 0.01), along.depth[0] / kRadius,
-          cylinder.runout(exact, 0.05), cylinder.runout(exact, 0.01), exact.depth[0] / kRadius);
+      along = profileOf(simulator);
+      diagonal = diagonalOf(simulator);
     }
-    log().converges(cylinder.name(), "depth, relative L1 error", spacings, errors);
+    const std::string curve =
+        std::to_string(static_cast<int>(100.0 * cylinder.a)) + (cylinder.dilute ? "_dilute" : "_whole");
+    log().curve(curve + "_reference", "x,depth", exact.x, exact.depth);
+    log().curve(curve + "_ours", "x,depth", along.x, along.depth);
+    log().converges(cylinder.name(), "deposit, relative L1 error", spacings, errors);
+    log().near({cylinder.name(), "height in the middle / r₀", "", exact.depth.front() / kRadius,
+                along.depth.front() / kRadius},
+               0.05 * cylinder.a, "5 % of h₀");
+    const double runout = cylinder.runout(exact, 0.05);
+    log().tell({cylinder.name(), "run-out / r₀ along a diagonal, at 5 % of h₀", "", runout,
+                cylinder.runout(diagonal, 0.05)},
+               "the grid has directions");
+    const Band band = laboratories(cylinder.a);
+    return log().compare(
+        {cylinder.name(), "run-out / r₀, read at 5 % of h₀", "", runout, cylinder.runout(along, 0.05)},
+        band.least, band.most, "Lajeunesse et al. 2004, Lube et al. 2004");
   }
 };
 
+const std::vector<double> kRatios = {0.25, 0.5, 1.0, 2.0};
+
 TEST_F(CylinderCollapse, WholeDepthFlows) {
-  for (const double a : {0.25, 0.5, 1.0, 2.0}) validate({a, false});
+  for (const double a : kRatios) validate({a, false});
 }
 
+/// With a thinner layer the run-out is that of laboratories, too, where cylinders are no higher than their
+/// radius.
 TEST_F(CylinderCollapse, DiluteLayerFlows) {
-  for (const double a : {0.25, 0.5, 1.0, 2.0}) validate({a, true});
+  for (const double a : kRatios) EXPECT_TRUE(validate({a, true}) || a > 1.0) << "a = " << a;
 }
 
 }  // namespace
