@@ -40,14 +40,17 @@ class FigureLog {
   /// A deviation that is known and told, and not asserted.
   void tell(const Figure& figure, const std::string& remark) { write("told", figure, 0.0, remark, "known"); }
 
-  /// What a law found in a laboratory says, from `least` to `most`; nothing is asserted: the equations differ
-  /// from sand. @returns whether ours lies between
+  /// What laboratories found, from `least` to `most`; nothing is asserted: the equations differ from sand,
+  /// and simulations from the equations. @returns whether what was simulated lies between
   bool compare(const Figure& figure, double least, double most, const std::string& source) {
-    const bool between = figure.ours >= least && figure.ours <= most;
+    const auto within = [&](double value) { return value >= least && value <= most; };
     char band[64];
     std::snprintf(band, sizeof band, "%.3g to %.3g", least, most);
-    write("laboratory", figure, 0.0, source + "; " + band, between ? "within" : "outside");
-    return between;
+    write("laboratory", figure, 0.0, source + ": " + band,
+          !within(figure.ours)      ? "outside"
+          : within(figure.expected) ? "within"
+                                    : "within; the equations are not");
+    return within(figure.ours);
   }
 
   /// Errors that must fall with each spacing, and over all of them by an order of 1/2 at least: first-order

@@ -85,8 +85,8 @@ class ColumnCollapse : public ::testing::Test {
           "", runout, column.runout(deposit, part)};
       // Sand 1 % of h₀ deep is less than a cell deep.
       if (part == 0.05) log().near(figure, 0.05 * runout, "5 %");
-      as_in_laboratories = log().compare(figure, 1.2 * column.a, 1.8 * column.a,
-                                         "1.2 a (Lube et al. 2005) to 1.8 a (Lajeunesse et al. 2005)");
+      as_in_laboratories =
+          log().compare(figure, 1.2 * column.a, 1.8 * column.a, "Lube et al. 2005, Lajeunesse et al. 2005");
     }
     return as_in_laboratories;
   }

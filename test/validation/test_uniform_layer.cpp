@@ -2,6 +2,8 @@
 
 #include "figures.h"
 #include "scene_run.h"
+#include "shallow_sand/solver/equations.h"
+#include "shallow_sand/solver/sand_constants.h"
 
 namespace shallow_sand {
 namespace {
@@ -53,8 +55,55 @@ double speedAfter(const Layer& layer, double time) {
   return fields.momentum_x[k] / fields.depth[k];
 }
 
-TEST(UniformLayer, AcceleratesByItsWeightLessItsFriction) {
-  FigureLog log("uniform_layer");
+/// Where nothing but friction acts, which Eq. 19 alone describes.
+struct Slide {
+  double time = 0.0;  ///< until it rests [s]
+  double way = 0.0;   ///< [m]
+};
+
+Slide slideToRest(double speed, double depth, double step, const SandConstants& sand) {
+  const float h = static_cast<float>(depth);
+  Momentum q{h * static_cast<float>(speed), 0.0f};
+  Slide slide;
+  while (q.x > 0.0f) {
+    const float before = q.x;
+    q = applyFriction(q, diluteLayer(h, sand), static_cast<float>(step), sand);
+    slide.time += step;
+    slide.way += 0.5 * static_cast<double>((before + q.x) / h) * step;
+  }
+  return slide;
+}
+
+class UniformLayer : public ::testing::Test {
+ protected:
+  static FigureLog& log() {
+    static FigureLog log("uniform_layer");
+    return log;
+  }
+};
+
+/// Coulomb's law: u = u₀ − μ g t, until u₀/(μ g), over u₀²/(2 μ g); h̄/h of it where only a layer rubs.
+TEST_F(UniformLayer, StopsByFrictionAlone) {
+  const double speed = 1.0;
+  const double depth = 0.1;
+  const double step = 1e-4;
+  for (const double layer_depth : {std::numeric_limits<double>::infinity(), 0.04}) {
+    GridParameters grid;
+    Material material;
+    material.friction_angle = 30.9 * M_PI / 180.0;
+    material.layer_depth = layer_depth;
+    const Slide slide =
+        slideToRest(speed, depth, step, sandConstants(grid.grid(), {0.0, 0.0, -9.81}, material));
+    const double braking = std::tan(material.friction_angle) * 9.81 * std::min(layer_depth, depth) / depth;
+    const std::string name = std::string("layer at 1 m/s on a plain, ") +
+                             (layer_depth < depth ? "0.4 of it rubs" : "all of it rubs");
+    log().near({name, "time to rest", "s", speed / braking, slide.time}, 2.0 * step, "two time steps");
+    log().near({name, "way to rest", "m", speed * speed / (2.0 * braking), slide.way}, 2.0 * step * speed,
+               "two time steps at full speed");
+  }
+}
+
+TEST_F(UniformLayer, AcceleratesByItsWeightLessItsFriction) {
   const double time = 0.3;
   const double whole = std::numeric_limits<double>::infinity();
   for (const Layer& layer : {Layer{35.0, 23.0, 0.1, whole, false}, Layer{35.0, 23.0, 0.1, whole, true},
@@ -63,8 +112,8 @@ TEST(UniformLayer, AcceleratesByItsWeightLessItsFriction) {
     const std::string name = std::string("uniform layer, ") +
                              (layer.tilted ? "tilted gravity" : "sloping bed") +
                              (layer.layer_depth < layer.depth ? ", 0.4 of it flows" : ", all of it flows");
-    log.near({name, "speed after 0.3 s", "m/s", expected, speedAfter(layer, time)}, 1e-3 * expected,
-             "0.1 %: roundings of single precision");
+    log().near({name, "speed after 0.3 s", "m/s", expected, speedAfter(layer, time)}, 1e-3 * expected,
+               "0.1 %: roundings of single precision");
   }
 }
 
