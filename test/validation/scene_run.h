@@ -9,6 +9,7 @@
 
 #include "lagrangian_sand.h"
 #include "profile.h"
+#include "scheme.h"
 #include "shallow_sand/scene/scene.h"
 #include "shallow_sand/scene/simulation.h"
 
@@ -31,10 +32,11 @@ inline YAML::Node channelFile(const std::string& name, double spacing) {
 }
 
 /// A simulator of that scene, on one thread of the CPU.
-inline Simulator simulatorOf(const YAML::Node& file) {
+inline Simulator simulatorOf(const YAML::Node& file, const Scheme& scheme) {
   Scene scene = readScene(file, "validation");
   scene.parameters.backend = Backend::cpu;
   scene.parameters.threads = 1;
+  scene.parameters.solver = scheme.parameters();
   return buildSimulator(std::move(scene));
 }
 
@@ -63,14 +65,14 @@ inline Profile profileOf(const Simulator& simulator) {
   return profile;
 }
 
-/// What a simulator of a flow along x computes, for the reference solver.
-inline LagrangianLaw lawOf(const Simulator& simulator) {
-  const SimulatorParameters& parameters = simulator.parameters();
-  const Fields fields = simulator.fields();
+/// What a scene of a flow along x tells, for the reference solver.
+inline LagrangianLaw lawOf(const YAML::Node& file) {
+  const Scene scene = readScene(file, "validation");
+  const SimulatorParameters& parameters = scene.parameters;
   LagrangianLaw law;
   law.friction = std::tan(parameters.material.friction_angle);
   law.gravity = -parameters.gravity.z();
-  law.slope = (fields.bed.front() - fields.bed[1]) / parameters.grid.spacing;
+  law.slope = (scene.bed[0] - scene.bed[1]) / parameters.grid.spacing;
   law.layer_fraction = parameters.material.layer_fraction;
   law.layer_depth = parameters.material.layer_depth;
   return law;

@@ -20,6 +20,9 @@ struct Cylinder {
                   dilute ? "layer min(0.8 h, h₀/4)" : "layer = whole depth");
     return text;
   }
+  std::string file() const {
+    return std::to_string(static_cast<int>(100.0 * a)) + (dilute ? "_dilute" : "_whole");
+  }
   YAML::Node scene(double spacing) const {
     YAML::Node scene = sceneFile("cylinder");
     scene["grid"]["spacing"] = spacing;
@@ -39,7 +42,7 @@ struct Cylinder {
 };
 
 Profile reference(const Cylinder& cylinder) {
-  LagrangianLaw law = lawOf(simulatorOf(cylinder.scene(0.02)));
+  LagrangianLaw law = lawOf(cylinder.scene(0.02));
   law.around_axis = true;
   LagrangianSand sand(
       law, gradedNodes(0.0, kRadius, 400), [&](double) { return cylinder.height(); }, true, false);
@@ -93,36 +96,43 @@ class CylinderCollapse : public ::testing::Test {
     return log;
   }
 
-  /// @returns whether its run-out, read at 5 % of h₀, is what laboratories found
-  bool validate(const Cylinder& cylinder) {
+  void validate(const Cylinder& cylinder) {
     const Profile exact = reference(cylinder);
+    log().curve(cylinder.file() + "_reference", "x,depth", exact.x, exact.depth);
+    for (const Scheme& scheme : kSchemes) validate(cylinder, scheme, exact);
+  }
+
+ private:
+  void validate(const Cylinder& cylinder, const Scheme& scheme, const Profile& exact) {
     const std::vector<double> spacings = {0.02, 0.01, 0.005};
     std::vector<double> errors;
-    Profile along;
-    Profile diagonal;
     for (const double spacing : spacings) {
-      Simulator simulator = simulatorOf(cylinder.scene(spacing));
+      Simulator simulator = simulatorOf(cylinder.scene(spacing), scheme);
       runToRest(simulator, 3.0);
       errors.push_back(relativeDifference(simulator, exact));
-      along = profileOf(simulator);
-      diagonal = diagonalOf(simulator);
+      if (spacing == spacings.back()) compare(cylinder, scheme, simulator, exact);
     }
-    const std::string curve =
-        std::to_string(static_cast<int>(100.0 * cylinder.a)) + (cylinder.dilute ? "_dilute" : "_whole");
-    log().curve(curve + "_reference", "x,depth", exact.x, exact.depth);
-    log().curve(curve + "_ours", "x,depth", along.x, along.depth);
-    log().converges(cylinder.name(), "deposit, relative L1 error", spacings, errors);
-    log().near({cylinder.name(), "height in the middle / r₀", "", exact.depth.front() / kRadius,
+    log().converges(scheme, cylinder.name(), "deposit, relative L1 error", spacings, errors);
+  }
+
+  void compare(const Cylinder& cylinder, const Scheme& scheme, const Simulator& simulator,
+               const Profile& exact) {
+    const Profile along = profileOf(simulator);
+    log().curve(cylinder.file() + "_" + scheme.name, "x,depth", along.x, along.depth);
+    log().near({scheme, cylinder.name(), "height in the middle / r₀", "", exact.depth.front() / kRadius,
                 along.depth.front() / kRadius},
                0.05 * cylinder.a, "5 % of h₀");
     const double runout = cylinder.runout(exact, 0.05);
-    log().tell({cylinder.name(), "run-out / r₀ along a diagonal, at 5 % of h₀", "", runout,
-                cylinder.runout(diagonal, 0.05)},
-               "the grid has directions");
+    log().tell({scheme, cylinder.name(), "run-out / r₀ along a diagonal, at 5 % of h₀", "", runout,
+                cylinder.runout(diagonalOf(simulator), 0.05)});
+    const Figure figure{scheme, cylinder.name(), "run-out / r₀, read at 5 % of h₀",
+                        "",     runout,          cylinder.runout(along, 0.05)};
+    log().tell(figure);
     const Band band = laboratories(cylinder.a);
-    return log().compare(
-        {cylinder.name(), "run-out / r₀, read at 5 % of h₀", "", runout, cylinder.runout(along, 0.05)},
-        band.least, band.most, "Lajeunesse et al. 2004, Lube et al. 2004");
+    const bool as_in_laboratories = log().compare(figure, band.least, band.most);
+    // With a thinner layer, cylinders no higher than their radius run out as far as in laboratories.
+    const bool must_be = cylinder.dilute && cylinder.a <= 1.0;
+    EXPECT_TRUE(as_in_laboratories || !must_be) << cylinder.name();
   }
 };
 
@@ -132,10 +142,8 @@ TEST_F(CylinderCollapse, WholeDepthFlows) {
   for (const double a : kRatios) validate({a, false});
 }
 
-/// With a thinner layer the run-out is that of laboratories, too, where cylinders are no higher than their
-/// radius.
 TEST_F(CylinderCollapse, DiluteLayerFlows) {
-  for (const double a : kRatios) EXPECT_TRUE(validate({a, true}) || a > 1.0) << "a = " << a;
+  for (const double a : kRatios) validate({a, true});
 }
 
 }  // namespace

@@ -25,8 +25,8 @@ YAML::Node sceneOf(double base, double layer, double spacing) {
   return scene;
 }
 
-History ours(double base, double layer, double spacing) {
-  Simulator simulator = simulatorOf(sceneOf(base, layer, spacing));
+History ours(double base, double layer, const Scheme& scheme, double spacing) {
+  Simulator simulator = simulatorOf(sceneOf(base, layer, spacing), scheme);
   History history;
   for (int frame = 0; frame < kFrames; ++frame) {
     simulator.advance(kFrame);
@@ -36,10 +36,10 @@ History ours(double base, double layer, double spacing) {
   return history;
 }
 
-/// The same by the reference solver, at places as far apart.
+/// The same by the reference solver, which has four columns a cell, at the places of ours.
 History reference(double base, double layer, double spacing) {
   LagrangianSand sand(
-      lawOf(simulatorOf(sceneOf(base, layer, spacing))), evenNodes(0.0, 2.0, 800),
+      lawOf(sceneOf(base, layer, spacing)), evenNodes(0.0, 2.0, static_cast<int>(8.0 / spacing)),
       [&](double x) { return base + (x < 1.0 ? 0.4 : 0.0); }, true, true);
   History history;
   for (int frame = 0; frame < kFrames; ++frame) {
@@ -68,14 +68,6 @@ std::vector<double> deviation(const History& a, const History& b) {
   return result;
 }
 
-std::vector<double> deviation(double base, double layer, double spacing) {
-  return deviation(ours(base, layer, spacing), ours(kBase, layer, spacing));
-}
-
-std::vector<double> exactDeviation(double base, double layer, double spacing) {
-  return deviation(reference(base, layer, spacing), reference(kBase, layer, spacing));
-}
-
 double largest(const std::vector<double>& values) { return *std::max_element(values.begin(), values.end()); }
 
 /// One of the paper's two rules for the layer that flows.
@@ -93,19 +85,26 @@ std::string nameOf(double base, const Rule& rule) {
   return text;
 }
 
-/// Largest deviation of a run at 1 cm, told beside that of the reference.
-double largestDeviation(FigureLog& log, double base, const Rule& rule) {
-  const std::vector<double> mine = deviation(base, rule.layer, 0.01);
-  const std::vector<double> exact = exactDeviation(base, rule.layer, 0.01);
-  log.tell({nameOf(base, rule), "largest ‖h_B − h_0.3‖, 1 cm cells", "m", largest(exact), largest(mine)},
-           "differences of smeared fronts are smaller");
+/// Largest deviation of a run with cells of 1 cm, and that of the reference.
+struct Largest {
+  double ours;
+  double exact;
+};
+
+Largest largestDeviation(FigureLog& log, const Scheme& scheme, double base, const Rule& rule) {
+  const std::vector<double> mine =
+      deviation(ours(base, rule.layer, scheme, 0.01), ours(kBase, rule.layer, scheme, 0.01));
+  const std::vector<double> exact =
+      deviation(reference(base, rule.layer, 0.01), reference(kBase, rule.layer, 0.01));
+  log.tell(
+      {scheme, nameOf(base, rule), "largest ‖h_B − h_0.3‖", "mm", 1e3 * largest(exact), 1e3 * largest(mine)});
   std::vector<double> times;
   for (int frame = 1; frame <= kFrames; ++frame) times.push_back(frame * kFrame);
   char file[40];
   std::snprintf(file, sizeof file, "%.1f_%s", base, rule.file);
-  log.curve(std::string(file) + "_ours", "time,deviation", times, mine);
+  log.curve(std::string(file) + "_" + scheme.name, "time,deviation", times, mine);
   log.curve(std::string(file) + "_reference", "time,deviation", times, exact);
-  return largest(mine);
+  return {largest(mine), largest(exact)};
 }
 
 class RaisedDamBreak : public ::testing::Test {
@@ -116,24 +115,35 @@ class RaisedDamBreak : public ::testing::Test {
   }
 };
 
-/// The paper finds the deviation "greatly minimized" and gives no figure; in the equations themselves, by the
-/// reference solver, a layer of 0.2 m leaves 0.32 to 0.58 of it.
+/// The paper finds the deviation "greatly minimized" and gives no figure; what the reference solver leaves of
+/// it may be exceeded by a tenth.
 TEST_F(RaisedDamBreak, FlowsMoreAlikeOnDeeperSandWhereOnlyALayerFlows) {
-  for (const double base : {0.1, 0.2, 0.6, 1.0, 2.0}) {
-    EXPECT_LT(largestDeviation(log(), base, kDilute), 0.6 * largestDeviation(log(), base, kWhole))
-        << "B = " << base;
+  for (const Scheme& scheme : kSchemes) {
+    for (const double base : {0.1, 0.2, 0.6, 1.0, 2.0}) {
+      const Largest whole = largestDeviation(log(), scheme, base, kWhole);
+      const Largest dilute = largestDeviation(log(), scheme, base, kDilute);
+      std::printf("B = %.1f m: a layer of 0.2 m leaves %.2f of the deviation, in the reference %.2f\n", base,
+                  dilute.ours / whole.ours, dilute.exact / whole.exact);
+      EXPECT_LT(dilute.ours / whole.ours, 1.1 * dilute.exact / whole.exact)
+          << scheme.name << ", B = " << base;
+    }
   }
 }
 
-TEST_F(RaisedDamBreak, DeviationsConvergeToThoseOfTheReference) {
+/// ∫|h − h_reference| over the volume of the dam, while the sand flows.
+TEST_F(RaisedDamBreak, DepthsConvergeToThoseOfTheReference) {
   const std::vector<double> spacings = {0.01, 0.005, 0.0025};
-  for (const Rule& rule : {kWhole, kDilute}) {
-    const double exact = largest(exactDeviation(1.0, rule.layer, 0.0025));
-    std::vector<double> errors;
-    for (const double spacing : spacings) {
-      errors.push_back(std::abs(largest(deviation(1.0, rule.layer, spacing)) / exact - 1.0));
+  const int frame = 20;
+  for (const Scheme& scheme : kSchemes) {
+    for (const Rule& rule : {kWhole, kDilute}) {
+      std::vector<double> errors;
+      for (const double spacing : spacings) {
+        errors.push_back(relativeDifference(ours(1.0, rule.layer, scheme, spacing)[frame],
+                                            reference(1.0, rule.layer, spacing)[frame]));
+      }
+      log().converges(scheme, nameOf(1.0, rule), "depth above B at 0.21 s, relative L1 error", spacings,
+                      errors);
     }
-    log().converges(nameOf(1.0, rule), "largest ‖h_B − h_0.3‖, relative error", spacings, errors);
   }
 }
 
