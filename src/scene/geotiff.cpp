@@ -36,7 +36,8 @@ void describeParameters(const SimulatorParameters& parameters, Metadata& metadat
   metadata["edges.x_max"] = edgeName(parameters.edges.x_max);
   metadata["edges.y_min"] = edgeName(parameters.edges.y_min);
   metadata["edges.y_max"] = edgeName(parameters.edges.y_max);
-  metadata["solver.reconstruction"] = "constant";
+  metadata["solver.reconstruction"] =
+      parameters.solver.reconstruction == Reconstruction::minmod ? "minmod" : "constant";
   metadata["solver.courant"] = exact(parameters.solver.courant);
   metadata["solver.max_step"] = exact(parameters.solver.max_step);
   if (parameters.solver.fixed_step) {

@@ -50,13 +50,12 @@ Edges readEdges(const SceneValue& value) {
 
 SolverParameters readSolver(const SceneValue& solver) {
   solver.requireMap({"reconstruction", "courant", "max_step", "fixed_step"});
-  if (const auto reconstruction = solver.find("reconstruction")) {
-    if (reconstruction->text() != "constant") {
-      const bool planned = reconstruction->text() == "minmod";
-      reconstruction->fail(planned ? "constant (minmod is not available yet)" : "constant");
-    }
-  }
   SolverParameters parameters;
+  if (const auto reconstruction = solver.find("reconstruction")) {
+    const std::string name = reconstruction->text();
+    if (name != "constant" && name != "minmod") reconstruction->fail("constant or minmod");
+    if (name == "minmod") parameters.reconstruction = Reconstruction::minmod;
+  }
   solver.read("courant", bounds::finite, parameters.courant);
   solver.read("max_step", bounds::finite, parameters.max_step);
   if (const auto step = solver.find("fixed_step")) {

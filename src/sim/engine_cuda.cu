@@ -1,10 +1,12 @@
 #include "shallow_sand/device/cuda_executor.cuh"
 #include "shallow_sand/sim/engine_on.h"
+#include "shallow_sand/solver/grid_stepper.h"
 
 namespace shallow_sand {
 
 std::unique_ptr<Engine> makeCudaEngine(const EngineStart& start) {
-  return std::make_unique<EngineOn<CudaExecutor>>(CudaExecutor(), start);
+  return std::make_unique<EngineOn<CudaExecutor, GridStepper<CudaExecutor>>>(CudaExecutor(), start,
+                                                                             start.with_slopes);
 }
 
 std::string cudaUnavailable() {
@@ -14,7 +16,7 @@ std::string cudaUnavailable() {
   if (devices == 0) return "no CUDA-capable device is detected";
   // A GPU older than those that the kernels were compiled for is found out here, not at the first launch.
   cudaFuncAttributes attributes{};
-  const cudaError_t kernel = cudaFuncGetAttributes(&attributes, forEachCellKernel<StepCell<false>>);
+  const cudaError_t kernel = cudaFuncGetAttributes(&attributes, maximumKernel<StepCell<Step<false, false>>>);
   return kernel == cudaSuccess ? "" : cudaGetErrorString(kernel);
 }
 

@@ -36,6 +36,23 @@ void checkField(const std::string& key, const std::vector<float>& values, const 
   }
 }
 
+void checkMaterial(const MaterialFields& fields, Material material, const Grid& grid) {
+  const auto check = [&](const char* key, const std::vector<float>& values, double Material::*member) {
+    if (values.empty()) return;
+    if (values.size() != grid.cells()) {
+      throw InvalidParameter(key, std::to_string(values.size()) + " values",
+                             "none or " + std::to_string(grid.cells()) + ", one for each cell");
+    }
+    for (const float value : values) {
+      material.*member = value;
+      material.validate();
+    }
+  };
+  check("material.friction_angle", fields.friction_angle, &Material::friction_angle);
+  check("material.dilute_layer.fraction", fields.layer_fraction, &Material::layer_fraction);
+  check("material.dilute_layer.depth", fields.layer_depth, &Material::layer_depth);
+}
+
 double sum(const std::vector<float>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
 struct ChosenBackend {
@@ -103,12 +120,14 @@ class Simulator::Implementation {
     Motion motion;
   };
 
-  Implementation(const SimulatorParameters& parameters, std::vector<float> bed, std::vector<float> depth)
+  Implementation(const SimulatorParameters& parameters, std::vector<float> bed, std::vector<float> depth,
+                 const MaterialFields& material)
       : parameters_(parameters) {
     parameters_.validate();
     grid_ = parameters_.grid.grid();
     checkField("bed", bed, grid_, -std::numeric_limits<float>::infinity());
     checkField("depth", depth, grid_, 0.0f);
+    checkMaterial(material, parameters_.material, grid_);
     start_volume_ = sum(depth) * grid_.cellArea();
     chosen_ = chooseBackend(parameters_.backend, parameters_.threads);
 
@@ -120,10 +139,15 @@ class Simulator::Implementation {
     start.open = {open(edges.x_min), open(edges.x_max), open(edges.y_min), open(edges.y_max)};
     const std::vector<float> rest(grid_.cells(), 0.0f);
     start.fields = {std::move(bed), std::move(depth), rest, rest};
+    start.material = localMaterial(parameters_.material, material, grid_);
+    start.with_slopes = parameters_.solver.reconstruction == Reconstruction::minmod;
 #ifdef SHALLOW_SAND_WITH_CUDA
     if (chosen_.backend == Backend::cuda) engine_ = makeCudaEngine(start);
 #endif
-    if (!engine_) engine_ = makeHostEngine(start, chosen_.threads);
+    if (!engine_) {
+      engine_ = makeHostEngine(start, chosen_.threads, parameters_.sleeping,
+                               parameters_.instructions.value_or(instructionSets().back()));
+    }
   }
 
   void addPour(const Pour& pour) {
@@ -167,11 +191,18 @@ class Simulator::Implementation {
   }
 
   void substep(double end) {
-    // No sliver of a step at the end, which roundings of the time would leave.
-    const double bound = stepBound();
-    const double step = end - time_ <= bound * (1.0 + 1e-9) ? end - time_ : bound;
+    double step = stepWithin(end);
+    double bound = attempt(step);
+    if (step > bound) {
+      requireNoFixedStep(bound);
+      trial_ = kHeadroom * bound;
+      step = stepWithin(end);
+      bound = attempt(step);
+      progress_.repeated_steps += 1;
+    }
+    trial_ = kHeadroom * bound;
     const double next = step < end - time_ ? time_ + step : end;
-    engine_->step(static_cast<float>(step));
+    progress_.cell_updates += engine_->accept();
     for (std::size_t k = 0; k < pours_.size(); ++k) {
       const double seconds = std::min(next, pours_[k].stop) - std::max(time_, pours_[k].start);
       if (seconds > 0.0 && pours_[k].rate > 0.0) engine_->pour(k, seconds * pours_[k].rate);
@@ -179,7 +210,6 @@ class Simulator::Implementation {
     time_ = next;
     progress_.last_step = step;
     progress_.steps += 1;
-    progress_.cell_updates += grid_.cells();
     clearBodies();
   }
 
@@ -196,19 +226,26 @@ class Simulator::Implementation {
     return engine_->bodyOverlap();
   }
 
-  /// Eq. 14 and 34. [s]
-  double stepBound() {
+  /// Length of the next step; none is a sliver at the end, which roundings of the time would leave. [s]
+  double stepWithin(double end) const {
     const SolverParameters& solver = parameters_.solver;
-    const double speed = engine_->signalSpeed();
-    const double bound = solver.courant * grid_.spacing / std::max(speed, 1e-9);
-    if (!solver.fixed_step) return std::min(bound, solver.max_step);
-    if (*solver.fixed_step > bound) {
-      std::ostringstream expected;
-      expected << "at most " << bound << " s at " << time_ << " s, where waves and bodies move at " << speed
-               << " m/s (courant · spacing / speed)";
-      throw InvalidParameter("solver.fixed_step", std::to_string(*solver.fixed_step), expected.str());
-    }
-    return *solver.fixed_step;
+    const double longest = solver.fixed_step.value_or(std::min(trial_, solver.max_step));
+    return end - time_ <= longest * (1.0 + 1e-9) ? end - time_ : longest;
+  }
+
+  /// Computes a step and returns how long it may be by Eq. 14 and 34. [s]
+  double attempt(double step) {
+    const double speed = engine_->attempt(static_cast<float>(step));
+    return parameters_.solver.courant * grid_.spacing / std::max(speed, 1e-9);
+  }
+
+  void requireNoFixedStep(double bound) const {
+    const SolverParameters& solver = parameters_.solver;
+    if (!solver.fixed_step) return;
+    std::ostringstream expected;
+    expected << "at most " << bound << " s at " << time_ << " s, where waves and bodies move at "
+             << solver.courant * grid_.spacing / bound << " m/s (courant · spacing / speed)";
+    throw InvalidParameter("solver.fixed_step", std::to_string(*solver.fixed_step), expected.str());
   }
 
   void castRays() {
@@ -268,6 +305,10 @@ class Simulator::Implementation {
             sum(engine_->fields().depth) * grid_.cellArea()};
   }
 
+  /// Speeds are known only once a step has read them. A step is tried that is a little shorter than the bound
+  /// at the step before, and is repeated in the rare case that speeds have grown by more.
+  static constexpr double kHeadroom = 0.97;
+
   SimulatorParameters parameters_;
   Grid grid_;
   ChosenBackend chosen_;
@@ -276,12 +317,16 @@ class Simulator::Implementation {
   std::vector<Pour> pours_;
   double start_volume_ = 0.0;
   double time_ = 0.0;
+  double trial_ =
+      std::numeric_limits<double>::infinity();  // length of the next step unless something forbids it [s]
   Progress progress_;
   bool placed_anew_ = false;  // a body has its first pose, and sand may be where it is
 };
 
-Simulator::Simulator(const SimulatorParameters& parameters, std::vector<float> bed, std::vector<float> depth)
-    : implementation_(std::make_unique<Implementation>(parameters, std::move(bed), std::move(depth))) {}
+Simulator::Simulator(const SimulatorParameters& parameters, std::vector<float> bed, std::vector<float> depth,
+                     const MaterialFields& material)
+    : implementation_(
+          std::make_unique<Implementation>(parameters, std::move(bed), std::move(depth), material)) {}
 Simulator::~Simulator() = default;
 Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;

@@ -191,10 +191,7 @@ INSTANTIATE_TEST_SUITE_P(NotYetAvailable, SceneMistakes,
                                            Mistake{"{elevation: 0.0, slope: [0.0, 0.0]}", "{file: dem.tif}",
                                                    "5: bed.file: ", "not available yet"},
                                            Mistake{"{depth: 0.3}", "{file: dem.tif, as: surface}",
-                                                   "7: sand[0].file: ", "not available yet"},
-                                           Mistake{"reconstruction: constant", "reconstruction: minmod",
-                                                   "25: solver.reconstruction: minmod;",
-                                                   "constant (minmod is not available yet)"}));
+                                                   "7: sand[0].file: ", "not available yet"}));
 
 TEST(Scene, ErrorsWithoutAFileHaveNoLine) {
   YAML::Node root;

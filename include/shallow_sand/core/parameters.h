@@ -49,8 +49,15 @@ struct Edges {
   Edge y_max = Edge::wall;
 };
 
-/// How time is cut into steps. Scene key `solver`.
+/// How values at the faces of cells follow from those at their centres.
+enum class Reconstruction {
+  constant,  ///< as at the centre; first order
+  minmod     ///< limited slopes of surface and velocity; sharper, and slower
+};
+
+/// How space and time are cut. Scene key `solver`.
 struct SolverParameters {
+  Reconstruction reconstruction = Reconstruction::constant;
   double courant = 0.45;   ///< C of Eq. 14 and 34; 0 < C < 1
   double max_step = 0.01;  ///< no step is longer; at least 1e-6 [s]
   std::optional<double>

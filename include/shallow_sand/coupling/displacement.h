@@ -173,8 +173,9 @@ struct DisplaceSand {
       hv = pushed(hv, h, verticalVelocity(i, j + 1) - verticalVelocity(i, j - 1));
     }
     depth[at] = h;
-    momentum_x[at] = hu;
-    momentum_y[at] = hv;
+    // Adding 0 leaves no negative zeros, which would be bits that a step changes.
+    momentum_x[at] = hu + 0.0f;
+    momentum_y[at] = hv + 0.0f;
   }
 };
 

@@ -28,6 +28,13 @@ struct Window {
             column_end > other.column_end ? column_end : other.column_end,
             row_end > other.row_end ? row_end : other.row_end};
   }
+  /// The cells that are in both; empty if there are none.
+  Window overlap(const Window& other) const {
+    return {column_begin > other.column_begin ? column_begin : other.column_begin,
+            row_begin > other.row_begin ? row_begin : other.row_begin,
+            column_end < other.column_end ? column_end : other.column_end,
+            row_end < other.row_end ? row_end : other.row_end};
+  }
   /// Grown by `margin` cells on every side, but not beyond the grid.
   Window grown(int margin, const Grid& grid) const {
     if (empty()) return *this;

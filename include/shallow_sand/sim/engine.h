@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "shallow_sand/coupling/body_view.h"
+#include "shallow_sand/device/instruction_set.h"
 #include "shallow_sand/device/window.h"
 #include "shallow_sand/sim/simulator.h"
+#include "shallow_sand/solver/sand_constants.h"
 #include "shallow_sand/solver/step.h"
 
 namespace shallow_sand {
@@ -32,9 +34,11 @@ class Engine {
   virtual void castRays(const std::vector<PlacedBody>& bodies) = 0;
   /// Moves the sand that the last rays found inside bodies.
   virtual void displace() = 0;
-  /// Largest speed that the time step must follow (Eq. 14, 34), that of bodies in the sand included. [m/s]
-  virtual float signalSpeed() = 0;
-  virtual void step(float dt) = 0;
+  /// Computes a step of dt [s]. Returns the largest speed that it had to follow (Eq. 14, 34), that of bodies
+  /// in the sand included [m/s]: if dt was too long for it, attempt again.
+  virtual float attempt(float dt) = 0;
+  /// The last attempt becomes the state. Returns how many cells it computed.
+  virtual long long accept() = 0;
   /// Adds this volume [m³] through a pour.
   virtual void pour(std::size_t number, double volume) = 0;
 
@@ -50,9 +54,13 @@ struct EngineStart {
   SandConstants sand;
   OpenEdges open;
   Fields fields;
+  LocalMaterialFields material;
+  bool with_slopes;  ///< minmod reconstruction
 };
 
-std::unique_ptr<Engine> makeHostEngine(const EngineStart& start, int threads);
+/// @param sleeping whether cells that cannot move are left out
+std::unique_ptr<Engine> makeHostEngine(const EngineStart& start, int threads, bool sleeping,
+                                       InstructionSet instructions);
 
 #ifdef SHALLOW_SAND_WITH_CUDA
 /// @throws std::runtime_error with CUDA's own words

@@ -27,22 +27,27 @@ struct CopyState {
   }
 };
 
-/// The engine on one backend. Executor: HostExecutor or CudaExecutor.
-template <class Executor>
+/// The engine on one backend. Executor: HostExecutor or CudaExecutor; Stepper: what computes a step on it.
+template <class Executor, class Stepper>
 class EngineOn : public Engine {
   template <class T>
   using Memory = typename Executor::template Memory<T>;
 
  public:
-  EngineOn(Executor executor, const EngineStart& start)
+  /// @param stepper what the stepper needs besides the executor
+  template <class... StepperArguments>
+  EngineOn(Executor executor, const EngineStart& start, const StepperArguments&... stepper)
       : executor_(std::move(executor)),
+        stepper_(executor_, stepper...),
         grid_(start.grid),
         sand_(start.sand),
         open_(start.open),
         bed_(uploaded(start.fields.bed)),
-        state_{uploaded(start.fields.depth), uploaded(start.fields.momentum_x),
-               uploaded(start.fields.momentum_y)},
-        next_(state_.likewise()),
+        state_(uploadedState(start.fields)),
+        next_(uploadedState(start.fields)),
+        repose_rise_(uploaded(start.material.repose_rise)),
+        layer_fraction_(uploaded(start.material.layer_fraction)),
+        layer_depth_(uploaded(start.material.layer_depth)),
         left_(2 * static_cast<std::size_t>(grid_.columns + grid_.rows), 0.0) {}
 
   void addBody(const DistanceField& field) override {
@@ -89,6 +94,7 @@ class EngineOn : public Engine {
     window_ = window_.grown(1, grid_);
     const Window cast = window_.united(before);
     if (cast.empty()) return;
+    stepper_.touch(cast);
     if (views.size() > view_capacity_) {
       views_.clear();
       views_.emplace_back(views.size());
@@ -114,19 +120,23 @@ class EngineOn : public Engine {
     executor_.forEachCell(window_, CopyState{writable(next_), writable(state_), grid_.columns});
   }
 
-  float signalSpeed() override {
-    if (window_.empty()) return sandSpeed<false>();
-    return std::max(sandSpeed<true>(),
-                    executor_.maximumOverCells(window_, ContactSpeed{contact(), grid_.columns}));
+  float attempt(float dt) override {
+    attempted_ = stepOf(dt);
+    const float speed = stepper_.attempt(attempted_, window_, writable(next_));
+    if (window_.empty()) return speed;
+    return std::max(speed, executor_.maximumOverCells(window_, ContactSpeed{contact(), grid_.columns}));
   }
 
-  void step(float dt) override {
-    if (window_.empty()) {
-      stepSand<false>(dt);
-    } else {
-      stepSand<true>(dt);
+  long long accept() override {
+    if (open_.x_min || open_.x_max || open_.y_min || open_.y_max) {
+      // Edge faces have no slopes.
+      withStep(attempted_, !window_.empty(), false, [&](const auto& step) {
+        executor_.forEachCell(Window::line(static_cast<int>(left_.size())),
+                              CountOutflow<std::decay_t<decltype(step)>>{step, left_.data()});
+      });
     }
     std::swap(state_, next_);
+    return stepper_.accept();
   }
 
   void pour(std::size_t number, double volume) override {
@@ -135,6 +145,7 @@ class EngineOn : public Engine {
     p.pour.poured = p.poured.data();
     p.pour.amount = static_cast<float>(volume / (static_cast<double>(p.covered) * grid_.cellArea()));
     executor_.forEachCell(p.pour.window, p.pour);
+    stepper_.touch(p.pour.window);
   }
 
   Fields fields() const override {
@@ -165,10 +176,10 @@ class EngineOn : public Engine {
     Memory<float> depth;
     Memory<float> momentum_x;
     Memory<float> momentum_y;
-    State likewise() const {
-      return {Memory<float>(depth.size()), Memory<float>(depth.size()), Memory<float>(depth.size())};
-    }
   };
+  static State uploadedState(const Fields& fields) {
+    return {uploaded(fields.depth), uploaded(fields.momentum_x), uploaded(fields.momentum_y)};
+  }
 
   struct Contacts {
     explicit Contacts(std::size_t cells)
@@ -215,33 +226,25 @@ class EngineOn : public Engine {
             c.velocity_y.data(), c.velocity_z.data(), c.overlap.data()};
   }
 
-  template <bool with_bodies>
-  float sandSpeed() {
-    return executor_.maximumOverCells(Window::all(grid_),
-                                      SignalSpeed<with_bodies>{stepOf<with_bodies>(0.0f)});
-  }
-
-  template <bool with_bodies>
-  void stepSand(float dt) {
-    const Step<with_bodies> step = stepOf<with_bodies>(dt);
-    if (open_.x_min || open_.x_max || open_.y_min || open_.y_max) {
-      executor_.forEachCell(Window::line(static_cast<int>(left_.size())),
-                            CountOutflow<with_bodies>{step, left_.data()});
-    }
-    stepGrid(executor_, step, writable(next_));
-  }
-
-  template <bool with_bodies>
-  Step<with_bodies> stepOf(float dt) {
-    Step<with_bodies> step{};
-    step.in = {state_.depth.data(), state_.momentum_x.data(), state_.momentum_y.data(), bed_.data(),
-               with_bodies ? contacts_.front().ceiling.data() : nullptr};
+  StepArguments stepOf(float dt) {
+    StepArguments step{};
+    const bool uniform = repose_rise_.size() == 0;
+    step.in = {state_.depth.data(),
+               state_.momentum_x.data(),
+               state_.momentum_y.data(),
+               bed_.data(),
+               window_.empty() ? nullptr : contacts_.front().ceiling.data(),
+               uniform ? nullptr : repose_rise_.data(),
+               uniform ? nullptr : layer_fraction_.data(),
+               uniform ? nullptr : layer_depth_.data()};
     step.sand = sand_;
     step.open = open_;
     step.columns = grid_.columns;
     step.rows = grid_.rows;
     step.dt = dt;
+    step.per_time = 1.0f / dt;
     step.rate = grid_.spacing / dt;
+    step.per_length = dt / grid_.spacing;
     return step;
   }
 
@@ -252,12 +255,17 @@ class EngineOn : public Engine {
   }
 
   Executor executor_;
+  Stepper stepper_;
   Grid grid_;
   SandConstants sand_;
   OpenEdges open_;
   Memory<float> bed_;
   State state_;
   State next_;
+  StepArguments attempted_{};
+  Memory<float> repose_rise_;  // these three are empty where the material is the same everywhere
+  Memory<float> layer_fraction_;
+  Memory<float> layer_depth_;
   Memory<double> left_;
   std::vector<PourOnBackend> pours_;
   std::vector<Memory<float>> distance_fields_;

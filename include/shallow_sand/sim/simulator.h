@@ -3,12 +3,14 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "shallow_sand/bodies/distance_field.h"
 #include "shallow_sand/core/fields.h"
 #include "shallow_sand/core/parameters.h"
+#include "shallow_sand/device/instruction_set.h"
 
 namespace shallow_sand {
 
@@ -27,6 +29,9 @@ struct SimulatorParameters {
   SolverParameters solver;
   Backend backend = Backend::automatic;
   int threads = 0;  ///< of the CPU backend; 0: as many as OpenMP offers
+  /// These two change no bit, only speed; for tests and benchmarks of the CPU backend.
+  bool sleeping = true;                        ///< leave out cells that cannot move
+  std::optional<InstructionSet> instructions;  ///< the fastest of the machine unless given
 
   void validate() const;  ///< @throws InvalidParameter
 };
@@ -43,17 +48,20 @@ struct Ledger {
 
 struct Progress {
   std::uint64_t steps = 0;
-  std::uint64_t cell_updates = 0;
-  double last_step = 0.0;  ///< [s]
+  std::uint64_t cell_updates = 0;    ///< cells that were computed; those that sleep are not
+  std::uint64_t repeated_steps = 0;  ///< attempts that proved too long for the speeds they met
+  double last_step = 0.0;            ///< [s]
 };
 
 /// The one façade over the solver, its bodies and its backends. Not thread-safe; several may live in one
 /// process.
 class Simulator {
  public:
-  /// `bed` [m] and `depth` [m]: one value a cell, finite, depth not negative.
+  /// `bed` [m] and `depth` [m]: one value a cell, finite, depth not negative. `material` is used where it is
+  /// not empty, `parameters.material` elsewhere.
   /// @throws InvalidParameter; std::runtime_error if `backend: cuda` is asked for and there is no such device
-  Simulator(const SimulatorParameters& parameters, std::vector<float> bed, std::vector<float> depth);
+  Simulator(const SimulatorParameters& parameters, std::vector<float> bed, std::vector<float> depth,
+            const MaterialFields& material = {});
   ~Simulator();
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;

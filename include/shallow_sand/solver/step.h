@@ -9,11 +9,14 @@ namespace shallow_sand {
 
 /// The fields that a step reads, on the memory of their backend.
 struct SandFields {
-  const float* depth;       ///< h [m]
-  const float* momentum_x;  ///< hu [m²/s]
-  const float* momentum_y;  ///< hv [m²/s]
-  const float* bed;         ///< b [m]
-  const float* ceiling;     ///< depth for which there is room under a body, infinite where there is none [m]
+  const float* depth;        ///< h [m]
+  const float* momentum_x;   ///< hu [m²/s]
+  const float* momentum_y;   ///< hv [m²/s]
+  const float* bed;          ///< b [m]
+  const float* ceiling;      ///< depth for which there is room under a body, infinite without one [m]
+  const float* repose_rise;  ///< μ ΔL [m]; these three are null where the material is the same everywhere
+  const float* layer_fraction;  ///< of layer(h)
+  const float* layer_depth;     ///< h̄ of layer(h) [m]
 };
 
 /// The fields that a step writes.
@@ -39,9 +42,15 @@ struct Cell {
   float u;
   float v;
   float b;
-  float room;   ///< depth that still fits under a body [m]
-  bool closed;  ///< a wall to its neighbours: full up to a body, or beyond a walled edge
+  float c;            ///< speed of waves [m/s]
+  float s;            ///< surface, h + b [m]
+  float wet_surface;  ///< s where there is sand, below everything where there is none [m]
+  float room;  ///< depth that still fits under a body [m]; kClosed where the cell is a wall to its neighbours
+  LocalMaterial material;
 };
+
+/// Room of a cell that is full up to a body, or beyond a walled edge.
+constexpr float kClosed = -1.0f;
 
 /// The fluxes through the four faces of a cell.
 struct CellFluxes {
@@ -65,42 +74,60 @@ struct CellUpdate {
   Momentum q;
 };
 
-/// A step (Eq. 8–10) as pure functions of cells and faces; all read the state at time t only. A backend may
-/// compute every face twice or keep it: the bits are the same. `with_bodies` is false where no body is near
-/// the sand; `in.ceiling` is read only where it is true.
-template <bool with_bodies>
-struct Step {
+/// Everything that a step works on.
+struct StepArguments {
   SandFields in;
   SandConstants sand;
   OpenEdges open;
   int columns;
   int rows;
-  float dt;    ///< Δt [s]
-  float rate;  ///< ΔL/Δt [m/s]
+  float dt;          ///< Δt [s]
+  float per_time;    ///< 1/Δt [1/s]
+  float rate;        ///< ΔL/Δt [m/s]
+  float per_length;  ///< Δt/ΔL [s/m]
+};
+
+/// A step (Eq. 8–10) as pure functions of cells and faces; all read the state at time t only. A backend may
+/// compute every face twice or keep it: the bits are the same. `with_bodies` is false where no body is near
+/// the sand; `in.ceiling` is read only where it is true. `with_slopes`: minmod reconstruction.
+template <bool with_bodies_, bool with_slopes_>
+struct Step : StepArguments {
+  static constexpr bool with_bodies = with_bodies_;
+  static constexpr bool with_slopes = with_slopes_;
 
   SHALLOW_SAND_HOST_DEVICE long long index(int i, int j) const {
     return static_cast<long long>(j) * columns + i;
   }
 
+  SHALLOW_SAND_HOST_DEVICE LocalMaterial materialAt(long long at) const {
+    if (in.repose_rise == nullptr) return sand.uniform;
+    return {in.repose_rise[at], in.layer_fraction[at], in.layer_depth[at]};
+  }
+
   SHALLOW_SAND_HOST_DEVICE Cell load(long long at) const {
+    return cell(in.depth[at], in.momentum_x[at], in.momentum_y[at], in.bed[at],
+                with_bodies ? in.ceiling[at] : 0.0f, materialAt(at));
+  }
+
+  SHALLOW_SAND_HOST_DEVICE Cell cell(float h, float hu, float hv, float b, float ceiling,
+                                     const LocalMaterial& material) const {
     Cell cell;
-    cell.h = in.depth[at];
-    cell.b = in.bed[at];
-    const float hu = in.momentum_x[at];
-    const float hv = in.momentum_y[at];
-    const float inverse = inverseDepth(cell.h, sand);
+    cell.h = h;
+    cell.b = b;
+    cell.s = h + b;
+    cell.wet_surface = h > 0.0f ? cell.s : -std::numeric_limits<float>::max();
+    const float inverse = inverseDepth(h, sand);
     cell.u = inverse * hu;
     cell.v = inverse * hv;
     // Where Eq. 13 damps the velocity, the momentum follows it (section 4.1).
-    const bool thin = (cell.h * cell.h) * (cell.h * cell.h) < sand.epsilon;
-    cell.hu = thin ? cell.h * cell.u : hu;
-    cell.hv = thin ? cell.h * cell.v : hv;
+    const bool thin = (h * h) * (h * h) < sand.epsilon;
+    cell.hu = thin ? h * cell.u : hu;
+    cell.hv = thin ? h * cell.v : hv;
+    cell.material = material;
+    cell.c = waveSpeed(diluteLayer(h, material), sand);
     cell.room = std::numeric_limits<float>::infinity();
-    cell.closed = false;
     if (with_bodies) {
-      const float ceiling = in.ceiling[at];
-      cell.room = maximum(ceiling - cell.h, 0.0f);
-      cell.closed = isFull(cell.h, ceiling, sand.spacing);
+      cell.room = isFull(h, ceiling, sand.spacing) ? kClosed : maximum(ceiling - h, 0.0f);
     }
     return cell;
   }
@@ -110,7 +137,9 @@ struct Step {
   /// wall, before which the bed rises like a level surface does in tilted gravity.
   SHALLOW_SAND_HOST_DEVICE static Cell beyond(Cell own, bool flows_on, float inner_bed, float level_rise) {
     own.b = flows_on ? own.b + (own.b - inner_bed) : own.b + level_rise;
-    own.closed = !flows_on;
+    own.s = own.h + own.b;
+    own.wet_surface = own.h > 0.0f ? own.s : own.wet_surface;
+    own.room = flows_on ? own.room : kClosed;
     return own;
   }
   SHALLOW_SAND_HOST_DEVICE Cell beyondWest(const Cell& own, int j) const {
@@ -138,106 +167,181 @@ struct Step {
   /// neighbour's surface, so that the sand that could flow meets the body's side. A gap under a body lets
   /// sand in only from below.
   SHALLOW_SAND_HOST_DEVICE static bool isWall(const Cell& cell, const Cell& neighbour) {
-    return cell.closed || (with_bodies && neighbour.h + neighbour.b > (cell.h + cell.b) + cell.room);
+    return cell.room < 0.0f || (with_bodies && neighbour.s > cell.s + cell.room);
+  }
+
+  /// Surface of a neighbour as the pressure sees it (Eq. 17): a wall is level with us, and so is a dry
+  /// neighbour whose bed stands above our surface. [m]
+  SHALLOW_SAND_HOST_DEVICE static float surfaceOf(const Cell& neighbour, const Cell& own, float level_rise) {
+    const float level = own.s + level_rise;
+    const float surface = maximum(minimum(neighbour.s, level), neighbour.wet_surface);
+    const bool wall = with_bodies && (isWall(neighbour, own) || isWall(own, neighbour));
+    return wall ? own.h + (own.b + level_rise) : surface;
+  }
+
+  /// A cell as it is at its centre, along x and along y.
+  SHALLOW_SAND_HOST_DEVICE static FaceSide centreX(const Cell& cell) {
+    return {cell.h, cell.u, cell.v, cell.b, cell.c, cell.material.repose_rise};
+  }
+  SHALLOW_SAND_HOST_DEVICE static FaceSide centreY(const Cell& cell) {
+    return {cell.h, cell.v, cell.u, cell.b, cell.c, cell.material.repose_rise};
+  }
+
+  /// A cell at one of its faces: s, u and v go on from its centre with minmod slopes, the bed too, but so
+  /// that the depth is not negative. Elevations are measured from a level surface.
+  /// @param half 0.5 at the face towards `after`, -0.5 at the one towards `before`
+  /// @param rise_before, rise_after of the surface, from each neighbour to the cell and on [m]
+  SHALLOW_SAND_HOST_DEVICE FaceSide sloped(const FaceSide& before, const FaceSide& own, const FaceSide& after,
+                                           float rise_before, float rise_after, float level_rise, float half,
+                                           const LocalMaterial& material) const {
+    const float ds = minmod(rise_before, rise_after);
+    const float db = minmod(own.b - (before.b + level_rise), (after.b - level_rise) - own.b);
+    const float dh = maximum(minimum(ds - db, 2.0f * own.h), -2.0f * own.h);
+    FaceSide side;
+    side.h = own.h + half * dh;
+    side.b = own.b + half * (ds - dh);
+    side.u = own.u + half * minmod(own.u - before.u, after.u - own.u);
+    side.v = own.v + half * minmod(own.v - before.v, after.v - own.v);
+    side.c = waveSpeed(diluteLayer(side.h, material), sand);
+    side.repose_rise = own.repose_rise;
+    return side;
+  }
+  SHALLOW_SAND_HOST_DEVICE FaceSide slopedX(const Cell& west, const Cell& own, const Cell& east,
+                                            float half) const {
+    return sloped(centreX(west), centreX(own), centreX(east),
+                  (own.s - sand.level_x) - surfaceOf(west, own, -sand.level_x),
+                  surfaceOf(east, own, sand.level_x) - (own.s + sand.level_x), sand.level_x, half,
+                  own.material);
+  }
+  SHALLOW_SAND_HOST_DEVICE FaceSide slopedY(const Cell& south, const Cell& own, const Cell& north,
+                                            float half) const {
+    return sloped(centreY(south), centreY(own), centreY(north),
+                  (own.s - sand.level_y) - surfaceOf(south, own, -sand.level_y),
+                  surfaceOf(north, own, sand.level_y) - (own.s + sand.level_y), sand.level_y, half,
+                  own.material);
   }
 
   /// Flux between two cells, each of which may be a wall to the other.
   template <bool may_be_closed>
   SHALLOW_SAND_HOST_DEVICE FaceFlux face(const FaceSide& left, const FaceSide& right, const Cell& left_cell,
                                          const Cell& right_cell, float level_rise) const {
-    FaceFlux flux = faceFlux(left, right, level_rise, sand);
+    FaceFlux flux = faceFlux(left, right, level_rise);
     flux.mass = limitMassFlux(flux.mass, minimum(left_cell.h, right_cell.room),
                               minimum(right_cell.h, left_cell.room), rate);
     if (may_be_closed) {
       const bool wall = isWall(left_cell, right_cell) || isWall(right_cell, left_cell);
       flux.mass = wall ? 0.0f : flux.mass;
       flux.shear = wall ? 0.0f : flux.shear;
-      flux.momentum_left = wall ? wallMomentum(left.h, left.u, sand) : flux.momentum_left;
-      flux.momentum_right = wall ? wallMomentum(right.h, -right.u, sand) : flux.momentum_right;
+      flux.momentum_left = wall ? wallMomentum(left, left.u) : flux.momentum_left;
+      flux.momentum_right = wall ? wallMomentum(right, -right.u) : flux.momentum_right;
     }
     return flux;
   }
 
-  template <bool may_be_closed>
-  SHALLOW_SAND_HOST_DEVICE FaceFlux faceX(const Cell& west, const Cell& east) const {
-    return face<may_be_closed>({west.h, west.u, west.v, west.b}, {east.h, east.u, east.v, east.b}, west, east,
-                               sand.level_x);
+  /// The face between two cells, and their neighbours on the far sides, which only slopes need. The slope of
+  /// a cell at the edge of the grid is 0.
+  SHALLOW_SAND_HOST_DEVICE FaceFlux faceX(const Cell& before, const Cell& west, const Cell& east,
+                                          const Cell& after, bool west_at_edge, bool east_at_edge) const {
+    if (!with_slopes) return face<with_bodies>(centreX(west), centreX(east), west, east, sand.level_x);
+    return face<with_bodies>(west_at_edge ? centreX(west) : slopedX(before, west, east, 0.5f),
+                             east_at_edge ? centreX(east) : slopedX(west, east, after, -0.5f), west, east,
+                             sand.level_x);
   }
-  template <bool may_be_closed>
-  SHALLOW_SAND_HOST_DEVICE FaceFlux faceY(const Cell& south, const Cell& north) const {
-    return face<may_be_closed>({south.h, south.v, south.u, south.b}, {north.h, north.v, north.u, north.b},
-                               south, north, sand.level_y);
+  SHALLOW_SAND_HOST_DEVICE FaceFlux faceY(const Cell& before, const Cell& south, const Cell& north,
+                                          const Cell& after, bool south_at_edge, bool north_at_edge) const {
+    if (!with_slopes) return face<with_bodies>(centreY(south), centreY(north), south, north, sand.level_y);
+    return face<with_bodies>(south_at_edge ? centreY(south) : slopedY(before, south, north, 0.5f),
+                             north_at_edge ? centreY(north) : slopedY(south, north, after, -0.5f), south,
+                             north, sand.level_y);
   }
 
   /// Faces at the edges of the grid; through an open edge sand only leaves.
   SHALLOW_SAND_HOST_DEVICE FaceFlux westEdge(const Cell& outside, const Cell& own) const {
-    FaceFlux flux = faceX<true>(outside, own);
+    FaceFlux flux = face<true>(centreX(outside), centreX(own), outside, own, sand.level_x);
     flux.mass = minimum(flux.mass, 0.0f);
     return flux;
   }
   SHALLOW_SAND_HOST_DEVICE FaceFlux eastEdge(const Cell& own, const Cell& outside) const {
-    FaceFlux flux = faceX<true>(own, outside);
+    FaceFlux flux = face<true>(centreX(own), centreX(outside), own, outside, sand.level_x);
     flux.mass = maximum(flux.mass, 0.0f);
     return flux;
   }
   SHALLOW_SAND_HOST_DEVICE FaceFlux southEdge(const Cell& outside, const Cell& own) const {
-    FaceFlux flux = faceY<true>(outside, own);
+    FaceFlux flux = face<true>(centreY(outside), centreY(own), outside, own, sand.level_y);
     flux.mass = minimum(flux.mass, 0.0f);
     return flux;
   }
   SHALLOW_SAND_HOST_DEVICE FaceFlux northEdge(const Cell& own, const Cell& outside) const {
-    FaceFlux flux = faceY<true>(own, outside);
+    FaceFlux flux = face<true>(centreY(own), centreY(outside), own, outside, sand.level_y);
     flux.mass = maximum(flux.mass, 0.0f);
     return flux;
   }
 
-  SHALLOW_SAND_HOST_DEVICE CellFluxes fluxes(const Cell& own, const Neighbours& n, int i, int j) const {
-    return {i == 0 ? westEdge(n.west, own) : faceX<with_bodies>(n.west, own),
-            i == columns - 1 ? eastEdge(own, n.east) : faceX<with_bodies>(own, n.east),
-            j == 0 ? southEdge(n.south, own) : faceY<with_bodies>(n.south, own),
-            j == rows - 1 ? northEdge(own, n.north) : faceY<with_bodies>(own, n.north)};
+  /// A cell for a face's slopes: the cell there, or any if there is none.
+  SHALLOW_SAND_HOST_DEVICE Cell far(bool exists, long long at, const Cell& other) const {
+    return with_slopes && exists ? load(at) : other;
   }
 
-  /// Surface of a neighbour as the pressure sees it; a wall is level with us.
-  SHALLOW_SAND_HOST_DEVICE float surfaceOf(const Cell& neighbour, const Cell& own, float level_rise) const {
-    const float own_surface = own.h + own.b;
-    const float surface = pressureSurface(neighbour.h, neighbour.b, own_surface, level_rise);
-    const bool wall = with_bodies && (isWall(neighbour, own) || isWall(own, neighbour));
-    return wall ? own.h + (own.b + level_rise) : surface;
+  SHALLOW_SAND_HOST_DEVICE CellFluxes fluxes(const Cell& own, const Neighbours& n, int i, int j) const {
+    const long long at = index(i, j);
+    const bool first_column = i == 0;
+    const bool last_column = i == columns - 1;
+    const bool first_row = j == 0;
+    const bool last_row = j == rows - 1;
+    CellFluxes f;
+    f.west = first_column ? westEdge(n.west, own)
+                          : faceX(far(i > 1, at - 2, own), n.west, own, n.east, i == 1, last_column);
+    f.east = last_column ? eastEdge(own, n.east)
+                         : faceX(n.west, own, n.east, far(i < columns - 2, at + 2, own), first_column,
+                                 i == columns - 2);
+    f.south = first_row ? southEdge(n.south, own)
+                        : faceY(far(j > 1, at - 2LL * columns, own), n.south, own, n.north, j == 1, last_row);
+    f.north = last_row ? northEdge(own, n.north)
+                       : faceY(n.south, own, n.north, far(j < rows - 2, at + 2LL * columns, own), first_row,
+                               j == rows - 2);
+    return f;
   }
 
   /// Advection (Eq. 8), pressure (Eq. 9, 17) and friction (Eq. 10, 19). A closed cell keeps its depth and
-  /// loses its momentum.
+  /// loses its momentum; a film has none.
   SHALLOW_SAND_HOST_DEVICE CellUpdate update(const Cell& own, const Neighbours& n,
                                              const CellFluxes& f) const {
-    const float per_length = dt / sand.spacing;
     const float h = own.h - per_length * ((f.east.mass - f.west.mass) + (f.north.mass - f.south.mass));
-    Momentum q;
-    q.x = own.hu -
-          per_length * ((f.east.momentum_left - f.west.momentum_right) + (f.north.shear - f.south.shear));
-    q.y = own.hv -
-          per_length * ((f.north.momentum_left - f.south.momentum_right) + (f.east.shear - f.west.shear));
-
-    const float layer = diluteLayer(own.h, sand);
+    const float inverse_spacing = 1.0f / sand.spacing;
+    const float layer = diluteLayer(own.h, own.material);
     const float rise_x = surfaceOf(n.east, own, sand.level_x) - surfaceOf(n.west, own, -sand.level_x);
     const float rise_y = surfaceOf(n.north, own, sand.level_y) - surfaceOf(n.south, own, -sand.level_y);
-    const float half = 0.5f * sand.gravity / sand.spacing;
-    q.x = q.x + (dt * layer) * (sand.gravity_x - half * rise_x);
-    q.y = q.y + (dt * layer) * (sand.gravity_y - half * rise_y);
-    q = applyFriction(q, layer, dt, sand);
+    const float half = 0.5f * sand.gravity * inverse_spacing;
+    Momentum change;  // a second
+    change.x =
+        layer * (sand.gravity_x - half * rise_x) -
+        inverse_spacing * ((f.east.momentum_left - f.west.momentum_right) + (f.north.shear - f.south.shear));
+    change.y =
+        layer * (sand.gravity_y - half * rise_y) -
+        inverse_spacing * ((f.north.momentum_left - f.south.momentum_right) + (f.east.shear - f.west.shear));
+    const Momentum q{own.hu + dt * change.x, own.hv + dt * change.y};
+    const Momentum rate{own.hu * per_time + change.x, own.hv * per_time + change.y};
+    const Momentum rubbed = applyFriction(q, rate, layer, own.material.repose_rise, sand);
 
-    const bool moves = h > 0.0f && !(with_bodies && own.closed);
-    return {with_bodies && own.closed ? own.h : h, {moves ? q.x : 0.0f, moves ? q.y : 0.0f}};
+    const bool closed = with_bodies && own.room < 0.0f;
+    const bool moves = h > sand.film && !closed;
+    return {closed ? own.h : h, {moves ? rubbed.x : 0.0f, moves ? rubbed.y : 0.0f}};
+  }
+
+  /// |u| + c or |v| + c of a cell that holds sand, whichever is larger (Eq. 14, 34). [m/s]
+  SHALLOW_SAND_HOST_DEVICE static float signalSpeed(const Cell& cell) {
+    const float speed = maximum(fabsf(cell.u), fabsf(cell.v)) + cell.c;
+    return with_bodies && cell.room < 0.0f ? 0.0f : speed;
   }
 };
 
-/// Steps one cell, computing all that it needs.
-template <bool with_bodies>
+/// Steps one cell, computing all that it needs. Returns its signal speed before the step. [m/s]
+template <class Step>
 struct StepCell {
-  Step<with_bodies> step;
+  Step step;
   SandFieldsOut out;
 
-  SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {
+  SHALLOW_SAND_HOST_DEVICE float operator()(int i, int j) const {
     const long long at = step.index(i, j);
     const Cell own = step.load(at);
     const Neighbours n = step.neighbours(own, i, j);
@@ -245,21 +349,16 @@ struct StepCell {
     out.depth[at] = next.h;
     out.momentum_x[at] = next.q.x;
     out.momentum_y[at] = next.q.y;
+    return step.signalSpeed(own);
   }
 };
-
-/// Steps the whole grid, cell by cell.
-template <class Executor, bool with_bodies>
-void stepGrid(Executor& executor, const Step<with_bodies>& step, const SandFieldsOut& out) {
-  executor.forEachCell(Window{0, 0, step.columns, step.rows}, StepCell<with_bodies>{step, out});
-}
 
 /// Adds to `left`, one double for each cell of the perimeter, the depth that leaves it through open edges in
 /// a step. Calls (0, k): k counts the cells of the southern row, the northern row, the western and the
 /// eastern column.
-template <bool with_bodies>
+template <class Step>
 struct CountOutflow {
-  Step<with_bodies> step;
+  Step step;
   double* left;  ///< 2·columns + 2·rows depths [m]
 
   SHALLOW_SAND_HOST_DEVICE void operator()(int, int k) const {
@@ -271,26 +370,22 @@ struct CountOutflow {
     const int i = side < 2 ? along : (side == 2 ? 0 : columns - 1);
     const int j = side < 2 ? (side == 0 ? 0 : rows - 1) : along;
     const Cell own = step.load(step.index(i, j));
-    const Neighbours n = step.neighbours(own, i, j);
     float out = 0.0f;
-    if (side == 0) out = -step.southEdge(n.south, own).mass;
-    if (side == 1) out = step.northEdge(own, n.north).mass;
-    if (side == 2) out = -step.westEdge(n.west, own).mass;
-    if (side == 3) out = step.eastEdge(own, n.east).mass;
-    left[k] += static_cast<double>(step.dt / step.sand.spacing * out);
+    if (side == 0) out = -step.southEdge(step.beyondSouth(own, i), own).mass;
+    if (side == 1) out = step.northEdge(own, step.beyondNorth(own, i)).mass;
+    if (side == 2) out = -step.westEdge(step.beyondWest(own, j), own).mass;
+    if (side == 3) out = step.eastEdge(own, step.beyondEast(own, j)).mass;
+    left[k] += static_cast<double>(step.per_length * out);
   }
 };
 
-/// Largest |u| + c or |v| + c of a cell that holds sand (Eq. 14, 34). [m/s]
-template <bool with_bodies>
-struct SignalSpeed {
-  Step<with_bodies> step;
-
-  SHALLOW_SAND_HOST_DEVICE float operator()(int i, int j) const {
-    const Cell cell = step.load(step.index(i, j));
-    const float speed = maximum(fabsf(cell.u), fabsf(cell.v)) + waveSpeed(cell.h, step.sand);
-    return cell.h > 0.0f && !cell.closed ? speed : 0.0f;
-  }
-};
+/// Calls function(Step<…>) with the kind of step that these arguments need.
+template <class Function>
+auto withStep(const StepArguments& arguments, bool with_bodies, bool with_slopes, const Function& function) {
+  if (with_bodies && with_slopes) return function(Step<true, true>{arguments});
+  if (with_bodies) return function(Step<true, false>{arguments});
+  if (with_slopes) return function(Step<false, true>{arguments});
+  return function(Step<false, false>{arguments});
+}
 
 }  // namespace shallow_sand
