@@ -123,11 +123,18 @@ class CylinderCollapse : public ::testing::Test {
                 along.depth.front() / kRadius},
                0.05 * cylinder.a, "5 % of h₀");
     const double runout = cylinder.runout(exact, 0.05);
-    log().tell({scheme, cylinder.name(), "run-out / r₀ along a diagonal, at 5 % of h₀", "", runout,
-                cylinder.runout(diagonalOf(simulator), 0.05)});
     const Figure figure{scheme, cylinder.name(), "run-out / r₀, read at 5 % of h₀",
                         "",     runout,          cylinder.runout(along, 0.05)};
-    log().tell(figure);
+    const Figure across{scheme, cylinder.name(), "the same along a diagonal of the grid",
+                        "",     runout,          cylinder.runout(diagonalOf(simulator), 0.05)};
+    for (const Figure& one : {figure, across}) {
+      // Thin sand is smeared and slowed: constant reconstruction does not reach 5 % on this grid.
+      if (scheme.isFirstOrder()) {
+        log().tell(one);
+      } else {
+        log().near(one, 0.05 * runout, "5 %");
+      }
+    }
     const Band band = laboratories(cylinder.a);
     const bool as_in_laboratories = log().compare(figure, band.least, band.most);
     // With a thinner layer, cylinders no higher than their radius run out as far as in laboratories.
