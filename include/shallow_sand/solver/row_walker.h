@@ -334,7 +334,7 @@ class RowWalker {
     const int tile_row = tiles_.tileOfRow(j);
     const Window row = tiles_.cellsOf(0, tile_row);
     const bool southern = j == row.row_begin + Tiles::kReach - 1;
-    const bool middle = j == row.row_end - Tiles::kReach - 1;
+    const bool middle = j == row.row_end - Tiles::kReach - 1 && j >= row.row_begin + Tiles::kReach;
     const bool northern = j == row.row_end - 1;
     if (!southern && !middle && !northern) return;
     const bool first_report = southern || row.rows() < Tiles::kReach;
