@@ -47,7 +47,25 @@ struct RandomSand {
   SimulatorParameters parameters;
   std::vector<float> bed;
   std::vector<float> depth;
+  MaterialFields material;  ///< empty unless varyMaterial has filled it
 };
+
+/// Sand of other kinds here and there: friction between 5° and 60°, layers of any kind. Each of the three
+/// lists may stay empty.
+inline void varyMaterial(std::mt19937& random, RandomSand& sand) {
+  const Grid grid = sand.parameters.grid.grid();
+  const auto field = [&](double low, double high) {
+    std::vector<float> values = randomWaves(random, grid);
+    for (float& value : values)
+      value = static_cast<float>(0.5 * (low + high) + 0.5 * (high - low) * static_cast<double>(value));
+    return values;
+  };
+  const unsigned which = 1 + random() % 7;
+  if (which & 1) sand.material.friction_angle = field(5.0 * M_PI / 180.0, 60.0 * M_PI / 180.0);
+  if (which & 2) sand.material.layer_fraction = field(0.3, 1.0);
+  if (which & 4)
+    sand.material.layer_depth = field(sand.parameters.grid.spacing, 20.0 * sand.parameters.grid.spacing);
+}
 
 inline RandomSand randomSand(std::mt19937& random, int columns, int rows) {
   RandomSand sand;

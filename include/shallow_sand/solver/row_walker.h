@@ -339,7 +339,7 @@ class RowWalker {
       for (int column = first; column <= last; ++column) tiles_.activity(column, tile_row) = TileActivity{};
     }
     const bool southern = j == row.row_begin + Tiles::kReach - 1;
-    const bool middle = j == row.row_end - Tiles::kReach - 1;
+    const bool middle = j == row.row_end - Tiles::kReach - 1 && j >= row.row_begin + Tiles::kReach;
     const bool northern = j == row.row_end - 1;
     if (!southern && !middle && !northern) return;
     for (int column = first; column <= last; ++column) {
