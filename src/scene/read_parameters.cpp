@@ -40,7 +40,10 @@ SolverParameters readSolver(const SceneValue& solver) {
   if (const auto reconstruction = solver.find("reconstruction")) {
     const std::string name = reconstruction->text();
     if (name != "constant" && name != "minmod") reconstruction->fail("constant or minmod");
-    if (name == "minmod") parameters.reconstruction = Reconstruction::minmod;
+    if (name == "minmod") {
+      parameters.reconstruction = Reconstruction::minmod;
+      parameters.courant = kCourantOfMinmod;
+    }
   }
   solver.read("courant", bounds::finite, parameters.courant);
   solver.read("max_step", bounds::finite, parameters.max_step);

@@ -40,7 +40,7 @@ SandConstants sandConstants(const Grid& grid, const Eigen::Vector3d& gravity, co
   sand.gravity_y = static_cast<float>(gravity.y());
   sand.level_x = static_cast<float>(-spacing * gravity.x() / gravity.z());
   sand.level_y = static_cast<float>(-spacing * gravity.y() / gravity.z());
-  sand.epsilon = static_cast<float>(std::pow(0.1 * spacing, 4));
+  sand.epsilon = static_cast<float>(std::pow(0.02 * spacing, 4));
   sand.film = static_cast<float>(0.01 * spacing);
   sand.uniform = localMaterial(material, grid);
   return sand;

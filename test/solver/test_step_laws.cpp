@@ -47,14 +47,16 @@ TEST(StepLaws, OnlyOpenEdgesLoseSand) {
     sand.parameters.material.friction_angle = uniform(random, 5.0, 40.0) * M_PI / 180.0;
     std::fill(sand.bed.begin(), sand.bed.end(), 0.0f);
     std::fill(sand.depth.begin(), sand.depth.end(), static_cast<float>(10.0 * sand.parameters.grid.spacing));
+    // In which sand falls through fifty cells.
+    const double duration = 10.0 * std::sqrt(sand.parameters.grid.spacing / 9.81);
     {
       Simulator walled(sand.parameters, sand.bed, sand.depth);
-      walled.advance(0.5);
+      walled.advance(duration);
       EXPECT_EQ(walled.ledger().left, 0.0);
     }
     sand.parameters.edges.x_max = Edge::open;
     Simulator open(sand.parameters, sand.bed, sand.depth);
-    open.advance(0.5);
+    open.advance(duration);
     EXPECT_GT(open.ledger().left, 0.01 * open.ledger().start);
     EXPECT_LT(open.ledger().error(), 1e-6);
   }

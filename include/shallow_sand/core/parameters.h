@@ -59,6 +59,9 @@ enum class Reconstruction {
   minmod     ///< limited slopes of surface and velocity; sharper, and slower
 };
 
+/// C of Eq. 14 that suits minmod: with longer steps of first order its smooth slopes turn into terraces.
+constexpr double kCourantOfMinmod = 0.25;
+
 /// How space and time are cut. Scene key `solver`.
 struct SolverParameters {
   Reconstruction reconstruction = Reconstruction::constant;

@@ -41,7 +41,7 @@ SHALLOW_SAND_HOST_DEVICE inline float waveSpeed(float layer, const SandConstants
 }
 
 /// Factor that turns momentum into velocity (Eq. 13): 1/h for deep sand, falling to 0 where sand is much
-/// thinner than a cell, and 0 for a film. ε is (0.1 ΔL)⁴: the paper's ΔL⁴ brakes every layer thinner than a
+/// thinner than a cell, and 0 for a film. ε is (0.02 ΔL)⁴: the paper's ΔL⁴ brakes every layer thinner than a
 /// cell. [1/m]
 SHALLOW_SAND_HOST_DEVICE inline float inverseDepth(float h, const SandConstants& sand) {
   const float h4 = (h * h) * (h * h);

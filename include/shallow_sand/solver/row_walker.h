@@ -73,6 +73,7 @@ class RowWalker {
 
  private:
   static constexpr int kHalo = Step::with_slopes ? 2 : 1;
+  static constexpr bool kWithRoom = Step::with_bodies || Step::with_slopes;
   static constexpr int kAhead = 3;  // rows
   /// Room before index 0 of every array; lengths are rounded up to whole vectors, the widest of which hold
   /// this many floats.
@@ -99,7 +100,7 @@ class RowWalker {
               values[k + 6 * kStride],
               values[k + 7 * kStride],
               values[k + 8 * kStride],
-              Step::with_bodies ? values[k + 9 * kStride] : std::numeric_limits<float>::infinity(),
+              kWithRoom ? values[k + 9 * kStride] : std::numeric_limits<float>::infinity(),
               {repose_rise[k], layer_fraction[k], layer_depth[k]}};
     }
     void set(int k, const Cell& cell) const {
@@ -112,7 +113,7 @@ class RowWalker {
       values[k + 6 * kStride] = cell.c;
       values[k + 7 * kStride] = cell.s;
       values[k + 8 * kStride] = cell.wet_surface;
-      if (Step::with_bodies) values[k + 9 * kStride] = cell.room;
+      if (kWithRoom) values[k + 9 * kStride] = cell.room;
     }
   };
 
@@ -165,8 +166,10 @@ class RowWalker {
     for (int k = 0; k < end; ++k) function(k);
   }
 
-  /// Rows outside of the grid are left as they are.
+  /// The row beyond the northern edge is made up; the one beyond the southern edge is, once the first row is
+  /// there.
   void load(Row& row, int j) {
+    if (j == step_.rows) beyondNorth(row);
     if (j < 0 || j >= step_.rows) return;
     const Step step = step_;
     const long long start = step.index(column_, j);
@@ -200,21 +203,15 @@ class RowWalker {
     const Row north = next_;
     const Row after = after_;
     const Fluxes flux = flux_north_;
-    const bool south_at_edge = j == 0;
-    const bool north_at_edge = j + 1 == step.rows - 1;
     sweep(wholeVectors(end_), ahead(step.in.momentum_x, j + kAhead), ahead(step.in.momentum_y, j + kAhead),
-          [=](int k) {
-            flux.set(k, step.faceY(before.get(k), south.get(k), north.get(k), after.get(k), south_at_edge,
-                                   north_at_edge));
-          });
+          [=](int k) { flux.set(k, step.faceY(before.get(k), south.get(k), north.get(k), after.get(k))); });
   }
 
   void southEdge() {
+    for (int k = -before_first_; k < loaded_; ++k) own_.set(k, step_.beyondSouth(next_.get(k), column_ + k));
     for (int k = 0; k < end_; ++k) {
       const Cell inside = next_.get(k);
-      const Cell outside = step_.beyondSouth(inside, column_ + k);
-      own_.set(k, outside);
-      const FaceFlux flux = step_.southEdge(outside, inside);
+      const FaceFlux flux = step_.southEdge(step_.beyondSouth(inside, column_ + k), inside);
       flux_north_.setEdge(k, flux, flux.momentum_right);
     }
   }
@@ -222,16 +219,21 @@ class RowWalker {
   void northEdge() {
     for (int k = 0; k < end_; ++k) {
       const Cell inside = own_.get(k);
-      const Cell outside = step_.beyondNorth(inside, column_ + k);
-      next_.set(k, outside);
-      const FaceFlux flux = step_.northEdge(inside, outside);
+      const FaceFlux flux = step_.northEdge(inside, step_.beyondNorth(inside, column_ + k));
       flux_north_.setEdge(k, flux, flux.momentum_left);
     }
   }
 
-  /// All faces of row j that look east or west. Those between cells that have no neighbour on the far side
-  /// are computed once more, one by one.
+  /// Beyond the last row, which is the newest one but `row`.
+  void beyondNorth(Row& row) {
+    const Row last = Step::with_slopes ? next_ : own_;
+    for (int k = -before_first_; k < loaded_; ++k) row.set(k, step_.beyondNorth(last.get(k), column_ + k));
+  }
+
+  /// All faces of row j that look east or west. Those at edges were computed before.
   void facesX(int j) {
+    if (atWest()) own_.set(-1, west_.get(j - cells_.row_begin));
+    if (atEast()) own_.set(end_, east_.get(j - cells_.row_begin));
     const Step step = step_;
     const Row own = own_;
     const Fluxes flux = flux_x_;
@@ -239,22 +241,10 @@ class RowWalker {
       const Cell west = own.get(k - 1);
       const Cell east = own.get(k);
       flux.set(k, step.faceX(Step::with_slopes ? own.get(k - 2) : west, west, east,
-                             Step::with_slopes ? own.get(k + 1) : east, false, false));
+                             Step::with_slopes ? own.get(k + 1) : east));
     });
-    if (Step::with_slopes) facesBesideEdges();
     if (atWest()) flux.set(0, west_flux_.get(j - cells_.row_begin));
     if (atEast()) flux.set(end_, east_flux_.get(j - cells_.row_begin));
-  }
-
-  void facesBesideEdges() {
-    const int last = step_.columns - 1 - column_;  // of the grid's columns
-    const auto compute = [&](int k) {
-      const bool west_at_edge = column_ + k == 1;
-      flux_x_.set(k, step_.faceX(own_.get(west_at_edge ? k - 1 : k - 2), own_.get(k - 1), own_.get(k),
-                                 own_.get(k == last ? k : k + 1), west_at_edge, k == last));
-    };
-    if (atWest() && last >= 1) compute(1);
-    if (end_ >= last && last >= 1) compute(last);
   }
 
   bool atWest() const { return cells_.column_begin == 0; }
@@ -293,8 +283,6 @@ class RowWalker {
   }
 
   void updateRow(int j) {
-    if (atWest()) own_.set(-1, west_.get(j - cells_.row_begin));
-    if (atEast()) own_.set(end_, east_.get(j - cells_.row_begin));
     const Step step = step_;
     const Row own = own_;
     const Row south = before_;

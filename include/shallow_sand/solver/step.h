@@ -206,19 +206,30 @@ struct Step : StepArguments {
     side.repose_rise = own.repose_rise;
     return side;
   }
-  SHALLOW_SAND_HOST_DEVICE FaceSide slopedX(const Cell& west, const Cell& own, const Cell& east,
-                                            float half) const {
-    return sloped(centreX(west), centreX(own), centreX(east),
-                  (own.s - sand.level_x) - surfaceOf(west, own, -sand.level_x),
-                  surfaceOf(east, own, sand.level_x) - (own.s + sand.level_x), sand.level_x, half,
-                  own.material);
+
+  /// A cell at one of its faces, along x and along y. Beside a wall it has no slopes.
+  SHALLOW_SAND_HOST_DEVICE FaceSide sideX(const Cell& west, const Cell& own, const Cell& east,
+                                          float half) const {
+    if (!with_slopes) return centreX(own);
+    const FaceSide side =
+        sloped(centreX(west), centreX(own), centreX(east),
+               (own.s - sand.level_x) - surfaceOf(west, own, -sand.level_x),
+               surfaceOf(east, own, sand.level_x) - (own.s + sand.level_x), sand.level_x, half, own.material);
+    return chosen(west.room < 0.0f || east.room < 0.0f, centreX(own), side);
   }
-  SHALLOW_SAND_HOST_DEVICE FaceSide slopedY(const Cell& south, const Cell& own, const Cell& north,
-                                            float half) const {
-    return sloped(centreY(south), centreY(own), centreY(north),
-                  (own.s - sand.level_y) - surfaceOf(south, own, -sand.level_y),
-                  surfaceOf(north, own, sand.level_y) - (own.s + sand.level_y), sand.level_y, half,
-                  own.material);
+  SHALLOW_SAND_HOST_DEVICE FaceSide sideY(const Cell& south, const Cell& own, const Cell& north,
+                                          float half) const {
+    if (!with_slopes) return centreY(own);
+    const FaceSide side = sloped(centreY(south), centreY(own), centreY(north),
+                                 (own.s - sand.level_y) - surfaceOf(south, own, -sand.level_y),
+                                 surfaceOf(north, own, sand.level_y) - (own.s + sand.level_y), sand.level_y,
+                                 half, own.material);
+    return chosen(south.room < 0.0f || north.room < 0.0f, centreY(own), side);
+  }
+  /// Member by member: of whole structs, compilers choose by a jump.
+  SHALLOW_SAND_HOST_DEVICE static FaceSide chosen(bool first, const FaceSide& a, const FaceSide& b) {
+    return {first ? a.h : b.h, first ? a.u : b.u, first ? a.v : b.v,
+            first ? a.b : b.b, first ? a.c : b.c, a.repose_rise};
   }
 
   /// Flux between two cells, each of which may be a wall to the other.
@@ -238,20 +249,15 @@ struct Step : StepArguments {
     return flux;
   }
 
-  /// The face between two cells, and their neighbours on the far sides, which only slopes need. The slope of
-  /// a cell at the edge of the grid is 0.
+  /// The face between two cells, and their neighbours on the far sides, which only slopes need.
   SHALLOW_SAND_HOST_DEVICE FaceFlux faceX(const Cell& before, const Cell& west, const Cell& east,
-                                          const Cell& after, bool west_at_edge, bool east_at_edge) const {
-    if (!with_slopes) return face<with_bodies>(centreX(west), centreX(east), west, east, sand.level_x);
-    return face<with_bodies>(west_at_edge ? centreX(west) : slopedX(before, west, east, 0.5f),
-                             east_at_edge ? centreX(east) : slopedX(west, east, after, -0.5f), west, east,
+                                          const Cell& after) const {
+    return face<with_bodies>(sideX(before, west, east, 0.5f), sideX(west, east, after, -0.5f), west, east,
                              sand.level_x);
   }
   SHALLOW_SAND_HOST_DEVICE FaceFlux faceY(const Cell& before, const Cell& south, const Cell& north,
-                                          const Cell& after, bool south_at_edge, bool north_at_edge) const {
-    if (!with_slopes) return face<with_bodies>(centreY(south), centreY(north), south, north, sand.level_y);
-    return face<with_bodies>(south_at_edge ? centreY(south) : slopedY(before, south, north, 0.5f),
-                             north_at_edge ? centreY(north) : slopedY(south, north, after, -0.5f), south,
+                                          const Cell& after) const {
+    return face<with_bodies>(sideY(before, south, north, 0.5f), sideY(south, north, after, -0.5f), south,
                              north, sand.level_y);
   }
 
@@ -277,29 +283,23 @@ struct Step : StepArguments {
     return flux;
   }
 
-  /// A cell for a face's slopes: the cell there, or any if there is none.
-  SHALLOW_SAND_HOST_DEVICE Cell far(bool exists, long long at, const Cell& other) const {
-    return with_slopes && exists ? load(at) : other;
+  /// The neighbours of a cell's neighbours; without slopes nobody looks at them.
+  SHALLOW_SAND_HOST_DEVICE Neighbours farNeighbours(const Cell& own, const Neighbours& n, int i,
+                                                    int j) const {
+    if (!with_slopes) return {own, own, own, own};
+    const long long at = index(i, j);
+    return {i > 1 ? load(at - 2) : beyondWest(n.west, j),
+            i < columns - 2 ? load(at + 2) : beyondEast(n.east, j),
+            j > 1 ? load(at - 2LL * columns) : beyondSouth(n.south, i),
+            j < rows - 2 ? load(at + 2LL * columns) : beyondNorth(n.north, i)};
   }
 
   SHALLOW_SAND_HOST_DEVICE CellFluxes fluxes(const Cell& own, const Neighbours& n, int i, int j) const {
-    const long long at = index(i, j);
-    const bool first_column = i == 0;
-    const bool last_column = i == columns - 1;
-    const bool first_row = j == 0;
-    const bool last_row = j == rows - 1;
-    CellFluxes f;
-    f.west = first_column ? westEdge(n.west, own)
-                          : faceX(far(i > 1, at - 2, own), n.west, own, n.east, i == 1, last_column);
-    f.east = last_column ? eastEdge(own, n.east)
-                         : faceX(n.west, own, n.east, far(i < columns - 2, at + 2, own), first_column,
-                                 i == columns - 2);
-    f.south = first_row ? southEdge(n.south, own)
-                        : faceY(far(j > 1, at - 2LL * columns, own), n.south, own, n.north, j == 1, last_row);
-    f.north = last_row ? northEdge(own, n.north)
-                       : faceY(n.south, own, n.north, far(j < rows - 2, at + 2LL * columns, own), first_row,
-                               j == rows - 2);
-    return f;
+    const Neighbours far = farNeighbours(own, n, i, j);
+    return {i == 0 ? westEdge(n.west, own) : faceX(far.west, n.west, own, n.east),
+            i == columns - 1 ? eastEdge(own, n.east) : faceX(n.west, own, n.east, far.east),
+            j == 0 ? southEdge(n.south, own) : faceY(far.south, n.south, own, n.north),
+            j == rows - 1 ? northEdge(own, n.north) : faceY(n.south, own, n.north, far.north)};
   }
 
   /// Advection (Eq. 8), pressure (Eq. 9, 17) and friction (Eq. 10, 19). A closed cell keeps its depth and
