@@ -148,7 +148,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"box: [0.1, 1.0", "box: [0, 1.0", "15: bodies[0].shape.box[0]: 0;", "a number from"},
         Mistake{"sphere: 0.2", "sphere: -1", "23: bodies[2].shape.sphere: -1;", "a number from"},
         Mistake{"radius: 0.1,", "radius: 0,", "12: pours[0].radius: 0;", "positive"},
-        Mistake{"rate: 0.01", "rate: -1", "12: pours[0].rate: -1;", "not negative"},
+        Mistake{"rate: 0.01", "rate: .inf", "12: pours[0].rate: .inf;", "a finite number"},
         Mistake{"stop: 8.0", "stop: -1", "12: pours[0].stop: -1;", "after start"},
         Mistake{"slope_angle: 30.0", "slope_angle: 90", "11: sand[4].cone.slope_angle: 90;", "90 degrees"},
         Mistake{"depth: 0.3", "depth: 1e400", "7: sand[0].depth: 1e400;", "finite"},
