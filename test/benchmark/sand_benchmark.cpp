@@ -1,101 +1,131 @@
 #include <benchmark/benchmark.h>
 
-#include <cstring>
+#include <algorithm>
 
-#include "shallow_sand/device/host_executor.h"
+#include "benchmark/busy_processes.h"
+#include "benchmark/references.h"
+#include "benchmark/timing.h"
 #include "shallow_sand/device/passive_threads.h"
-#include "shallow_sand/sim/simulator.h"
-#include "shallow_sand/solver/grid_stepper.h"
-#include "shallow_sand/solver/sand_constants.h"
 
-/// How fast the CPU's step is: cells that it computes a second ("cells_per_second"), beside what bounds it.
+/// How fast the CPU's step is, beside what bounds it and what it is compared to; see README.md here.
+/// Everything that a ratio compares runs by turns, so that what else a machine does falls on both.
 namespace shallow_sand {
 namespace {
 
-constexpr double kSpacing = 0.02;
-constexpr int kStepsOfAFrame = 10;
-
-SimulatorParameters parametersOf(int cells_along_side, int threads) {
-  SimulatorParameters parameters;
-  parameters.backend = Backend::cpu;
-  parameters.grid.spacing = kSpacing;
-  parameters.grid.size = {cells_along_side * kSpacing, cells_along_side * kSpacing};
-  parameters.threads = threads;
-  return parameters;
+void setCounters(benchmark::State& state, const TimedRun& run) {
+  state.counters["cells_per_second"] = 1.0 / run.cells().typical();
+  state.counters["best_cells_per_second"] = 1.0 / run.cells().best();
+  state.counters["repeated"] = run.repeated();
+  state.counters["moving"] = run.moving();
 }
 
-/// Sand without friction that sloshes in a box for ever: every cell moves in every step.
-struct SloshingSand {
-  SimulatorParameters parameters;
-  std::vector<float> bed;
-  std::vector<float> depth;
-
-  SloshingSand(int side, int threads) : parameters(parametersOf(side, threads)) {
-    parameters.material.friction_angle = 0.0;
-    parameters.gravity = {0.5, 0.3, -9.81};
-    const Grid grid = parameters.grid.grid();
-    for (int j = 0; j < side; ++j) {
-      for (int i = 0; i < side; ++i) {
-        bed.push_back(0.05f * std::sin(0.11f * i) * std::sin(0.07f * j));
-        depth.push_back(1.0f + 0.1f * std::sin(0.05f * i + 0.09f * j));
-      }
-    }
+/// A map in which every cell moves, by turns with copying what its steps must move and with the plain loop.
+void dense(benchmark::State& state, const Map& map) {
+  const double cells = static_cast<double>(map.bed.size());
+  TimedRun run(map.simulator());
+  CopyingStep copying(map, map.parameters.threads);
+  PlainStep plain(map, map.parameters.threads);
+  Timing copy_time;
+  Timing plain_time;
+  int frame = 0;
+  for (auto _ : state) {
+    state.SetIterationTime(run.runFrame());
+    // Not after every frame: they empty the caches of what the next one needs.
+    if (frame++ % 8 != 0) continue;
+    copying();
+    copy_time.add(secondsOf(copying), cells);
+    plain_time.add(secondsOf(plain), cells);
   }
-};
-
-/// Runs frames of a few steps and counts the cells that moved.
-void runFrames(benchmark::State& state, Simulator& simulator, double frame) {
-  simulator.advance(20.0 * frame);  // all cells have begun to move, or come to rest
-  const Progress before = simulator.progress();
-  for (auto _ : state) simulator.advance(frame);
-  const Progress& after = simulator.progress();
-  state.counters["cells_per_second"] = benchmark::Counter(
-      static_cast<double>(after.cell_updates - before.cell_updates), benchmark::Counter::kIsRate);
-  state.counters["steps_per_second"] =
-      benchmark::Counter(static_cast<double>(after.steps - before.steps), benchmark::Counter::kIsRate);
-  state.counters["repeated"] = static_cast<double>(after.repeated_steps - before.repeated_steps);
-  state.counters["moving"] = static_cast<double>(simulator.activeCells());
-}
-
-void denseSand(benchmark::State& state, const SloshingSand& sand) {
-  Simulator simulator(sand.parameters, sand.bed, sand.depth);
-  simulator.advance(1e-3);
-  const double step = simulator.progress().last_step;
-  runFrames(state, simulator, kStepsOfAFrame * std::max(step, 0.003));
+  setCounters(state, run);
+  state.counters["times_copy"] = run.cells().best() / copy_time.best();
+  state.counters["times_plain_loop"] = run.cells().best() / plain_time.best();
+  state.counters["copy_bytes_per_second"] = 28.0 / copy_time.best();
 }
 
 void moving(benchmark::State& state) {
-  denseSand(state, SloshingSand(static_cast<int>(state.range(0)), static_cast<int>(state.range(1))));
+  dense(state, sloshingSand(static_cast<int>(state.range(0)), static_cast<int>(state.range(1))));
 }
 
 void instructions(benchmark::State& state) {
-  SloshingSand sand(1024, 1);
-  const auto set = static_cast<InstructionSet>(state.range(0));
-  sand.parameters.instructions = set;
-  state.SetLabel(toString(set));
-  denseSand(state, sand);
+  Map map = sloshingSand(256, 1);
+  map.parameters.instructions = static_cast<InstructionSet>(state.range(0));
+  state.SetLabel(toString(*map.parameters.instructions));
+  dense(state, map);
 }
 
 void minmod(benchmark::State& state) {
-  SloshingSand sand(1024, 1);
-  sand.parameters.solver.reconstruction = Reconstruction::minmod;
-  denseSand(state, sand);
+  Map map = sloshingSand(static_cast<int>(state.range(0)), 1);
+  map.parameters.solver.reconstruction = Reconstruction::minmod;
+  dense(state, map);
+}
+
+/// A patch of 256² cells moves in a map of 4096², by turns with a map of 256² that moves.
+void patch(benchmark::State& state) {
+  const int threads = static_cast<int>(state.range(1));
+  TimedRun run(sloshingPit(4096, 256, static_cast<int>(state.range(0)), threads).simulator());
+  TimedRun alone(sloshingSand(256, threads).simulator());
+  for (auto _ : state) {
+    state.SetIterationTime(run.runFrame());
+    alone.runFrame();
+  }
+  setCounters(state, run);
+  state.counters["times_alone"] = run.steps().best() / alone.steps().best();
+  state.counters["typical_times_alone"] = run.steps().typical() / alone.steps().typical();
+}
+
+/// A frame of 1/50 s of a large map in which nothing moves.
+void resting(benchmark::State& state) {
+  constexpr double kFrame = 0.02;
+  const Edge edge = state.range(0) != 0 ? Edge::open : Edge::wall;
+  Simulator simulator = restingSand(4096, 2, edge).simulator();
+  simulator.advance(10.0 * kFrame);
+  for (auto _ : state) simulator.advance(kFrame);
+  state.counters["moving"] = static_cast<double>(simulator.activeCells());
+}
+
+/// Two threads by turns with one, beside other processes that are busy on every core.
+void besideBusyProcesses(benchmark::State& state) {
+  const int side = static_cast<int>(state.range(0));
+  const BusyProcesses others(static_cast<int>(state.range(1)));
+  TimedRun two(sloshingSand(side, 2).simulator());
+  TimedRun one(sloshingSand(side, 1).simulator());
+  for (auto _ : state) {
+    state.SetIterationTime(two.runFrame());
+    one.runFrame();
+  }
+  setCounters(state, two);
+  state.counters["times_one_thread"] = two.cells().typical() / one.cells().typical();
+  state.counters["one_thread_cells_per_second"] = 1.0 / one.cells().typical();
+}
+
+void registerAll() {
+  const auto add = [](const char* name, void (*function)(benchmark::State&)) {
+    return benchmark::RegisterBenchmark(name, function)->UseManualTime();
+  };
+  add("moving", moving)->ArgNames({"side", "threads"})->ArgsProduct({{64, 128, 256, 1024, 4096}, {1, 2}});
+  for (const InstructionSet set : instructionSets())
+    add("instructions", instructions)->Arg(static_cast<int>(set));
+  add("minmod", minmod)->ArgNames({"side"})->Arg(256)->Arg(1024);
+  // Corners of tiles lie at multiples of 32 columns and 16 rows.
+  add("patch", patch)->ArgNames({"corner", "threads"})->ArgsProduct({{1024, 1031, 1039}, {1, 2}});
+  benchmark::RegisterBenchmark("resting", resting)
+      ->ArgNames({"open_edges"})
+      ->Arg(0)
+      ->Arg(1)
+      ->Unit(benchmark::kMicrosecond);
+  add("beside_busy_processes", besideBusyProcesses)
+      ->ArgNames({"side", "others"})
+      ->ArgsProduct({{64, 256, 1024}, {0, 1, 2}});
 }
 
 }  // namespace
 }  // namespace shallow_sand
 
 int main(int argc, char** argv) {
-  using namespace shallow_sand;
-  waitPassively(argv);
-  benchmark::RegisterBenchmark("moving", moving)
-      ->ArgNames({"side", "threads"})
-      ->ArgsProduct({{64, 256, 1024, 4096}, {1, 2}})
-      ->UseRealTime();
-  for (const InstructionSet set : instructionSets())
-    benchmark::RegisterBenchmark("instructions", instructions)->Arg(static_cast<int>(set))->UseRealTime();
-  benchmark::RegisterBenchmark("minmod", minmod)->UseRealTime();
+  shallow_sand::waitPassively(argv);
+  shallow_sand::registerAll();
   benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

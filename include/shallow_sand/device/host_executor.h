@@ -1,16 +1,17 @@
 #pragma once
 
-#include <omp.h>
-
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
 #include <type_traits>
 #include <vector>
 
+#include "shallow_sand/device/helping_threads.h"
 #include "shallow_sand/device/window.h"
+#include "shallow_sand/device/worth_of_help.h"
 
 namespace shallow_sand {
 
@@ -29,8 +30,9 @@ class FieldMemory {
   void* begin_;
 };
 
-/// Runs functions of a cell on the CPU, rows shared among OpenMP threads. Every cell is computed from values
-/// that no other cell of the same call writes, so the number of threads changes no bit.
+/// Runs functions of a cell on the CPU, rows shared among OpenMP threads, and tasks among helping threads.
+/// Every cell is computed from values that no other cell of the same call writes, so the number of threads
+/// changes no bit.
 class HostExecutor {
  public:
   /// Values past the end may be read, up to two vectors of floats: a loop over rows need not stop short.
@@ -53,7 +55,7 @@ class HostExecutor {
     FieldMemory memory_;
   };
 
-  explicit HostExecutor(int threads) : threads_(threads) {}
+  explicit HostExecutor(int threads) : threads_(threads), team_(std::make_shared<Team>(threads - 1)) {}
 
   /// Calls function(i, j) once for every cell of the window.
   template <class Function>
@@ -82,22 +84,30 @@ class HostExecutor {
   template <class Function>
   void forEachTask(int count, const Function& function) const {
     const int threads = std::min(threads_, count);
-    if (threads <= 1) {
+    const double begin = seconds();
+    if (threads <= 1 || !team_->worth.ask(begin)) {
       for (int task = 0; task < count; ++task) function(task, 0);
       return;
     }
     std::vector<Share> shares(threads);
-    const auto begin = [&](int share) { return static_cast<int>(1LL * count * share / threads); };
-    for (int share = 0; share < threads; ++share) shares[share].next = begin(share);
-#pragma omp parallel num_threads(threads)
-    {
-      const int thread = omp_get_thread_num();
-      for (int help = 0; help < threads; ++help) {
+    const auto first = [&](int share) { return static_cast<int>(1LL * count * share / threads); };
+    for (int share = 0; share < threads; ++share) shares[share].next = first(share);
+    int done_here = 0;
+    double end_here = begin;
+    team_->threads.run([&](int thread) {
+      int done = 0;
+      for (int help = 0; help < threads && thread < threads; ++help) {
         const int share = (thread + help) % threads;
-        const int end = begin(share + 1);
-        for (int task = shares[share].next++; task < end; task = shares[share].next++) function(task, thread);
+        const int end = first(share + 1);
+        for (int task = shares[share].next++; task < end; task = shares[share].next++, ++done)
+          function(task, thread);
       }
-    }
+      if (thread > 0) return;
+      done_here = done;
+      end_here = seconds();
+    });
+    const double end = seconds();
+    team_->worth.book(end - begin, (end_here - begin) * count / std::max(done_here, 1), end);
   }
 
   int threads() const { return threads_; }
@@ -107,7 +117,18 @@ class HostExecutor {
     std::atomic<int> next{0};
   };
 
+  struct Team {
+    explicit Team(int helpers) : threads(helpers) {}
+    HelpingThreads threads;
+    WorthOfHelp worth;
+  };
+
+  static double seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  }
+
   int threads_;
+  std::shared_ptr<Team> team_;  // of all copies
 };
 
 }  // namespace shallow_sand

@@ -14,9 +14,9 @@ namespace shallow_sand {
 template <class Step>
 class RowWalker {
  public:
-  /// Widest rectangle that is asked for [cells]; what its rows need fits the first cache. The last tile of a
-  /// row may make it wider by almost a tile.
-  static constexpr int kWidest = 8 * Tiles::kColumns;
+  /// Widest rectangle that is asked for [cells]; what its rows need leaves room in the first cache for those
+  /// that are fetched ahead. The last tile of a row may make it wider by almost a tile.
+  static constexpr int kWidest = 4 * Tiles::kColumns;
   static constexpr int kHighest = 4 * Tiles::kRows;
   /// Floats of scratch memory.
   static constexpr int scratchSize() { return kScratch; }
@@ -290,10 +290,14 @@ class RowWalker {
     const Fluxes flux_x = flux_x_;
     const Fluxes flux_south = flux_south_;
     const Fluxes flux_north = flux_north_;
-    float* const result = result_;
+    // The loop runs on to whole vectors, and past its end lie cells of other rectangles.
+    const bool in_place = wholeVectors(end_) == end_;
+    const long long start = step.index(column_, j);
+    float* const depth_out = in_place ? out_.depth + start : result_;
+    float* const momentum_x_out = in_place ? out_.momentum_x + start : result_ + kStride;
+    float* const momentum_y_out = in_place ? out_.momentum_y + start : result_ + 2 * kStride;
     float* const speed = speed_;
     float* const motion = motion_;
-    const long long start = step.index(column_, j);
     const float* const momentum_x = step.in.momentum_x + start;
     const float* const momentum_y = step.in.momentum_y + start;
     const float* const soon = ahead(out_.momentum_y, j + 1);
@@ -302,18 +306,19 @@ class RowWalker {
       const Neighbours neighbours{own.get(k - 1), own.get(k + 1), south.get(k), north.get(k)};
       const CellFluxes fluxes{flux_x.get(k), flux_x.get(k + 1), flux_south.get(k), flux_north.get(k)};
       const CellUpdate next = step.update(cell, neighbours, fluxes);
-      result[k] = next.h;
-      result[k + kStride] = next.q.x;
-      result[k + 2 * kStride] = next.q.y;
+      depth_out[k] = next.h;
+      momentum_x_out[k] = next.q.x;
+      momentum_y_out[k] = next.q.y;
       speed[k] = maximum(speed[k], step.signalSpeed(cell));
       const float crossing = (fabsf(fluxes.west.mass) + fabsf(fluxes.east.mass)) +
                              (fabsf(fluxes.south.mass) + fabsf(fluxes.north.mass));
       const float before = fabsf(momentum_x[k]) + fabsf(momentum_y[k]);
       motion[k] = maximum(motion[k], crossing + (before + (fabsf(next.q.x) + fabsf(next.q.y))));
     });
-    std::copy_n(result, end_, out_.depth + start);
-    std::copy_n(result + kStride, end_, out_.momentum_x + start);
-    std::copy_n(result + 2 * kStride, end_, out_.momentum_y + start);
+    if (in_place) return;
+    std::copy_n(result_, end_, out_.depth + start);
+    std::copy_n(result_ + kStride, end_, out_.momentum_x + start);
+    std::copy_n(result_ + 2 * kStride, end_, out_.momentum_y + start);
   }
 
   /// Tells the tiles of row j what was found since the last call that did, when row j ends the southern, the
@@ -374,7 +379,7 @@ class RowWalker {
   Fluxes flux_south_, flux_north_, flux_x_;
   Row west_, east_;  // beyond the edges of the grid; these and their faces count rows from the first one
   Fluxes west_flux_, east_flux_;
-  float* result_;  // of one row: h, hu, hv
+  float* result_;  // of a row that does not end with a whole vector: h, hu, hv
   float* speed_;
   float* motion_;
 };
