@@ -128,20 +128,21 @@ TEST(Terrain, MeansKeepTheVolume) {
 TEST(Terrain, CellsOnPixelsGetTheirNumbersToTheBit) {
   std::mt19937 generator = seededGenerator();
   std::lognormal_distribution<float> value(-20.0f, 20.0f);
-  Grid grid;
-  grid.columns = 41;
-  grid.rows = 23;
-  grid.spacing = 0.03f;
-  grid.origin_x = -0.7;
-  grid.origin_y = 5e5;
+  SimulatorParameters parameters;
+  parameters.grid.size = {1.23, 0.69};
+  parameters.grid.spacing = 0.03;
+  parameters.grid.origin = {-0.7, 5e5};
+  const Grid grid = parameters.grid.grid();
   const auto field = [&] {
     std::vector<float> values(grid.cells());
     std::generate(values.begin(), values.end(), [&] { return std::min(value(generator), 1e9f); });
     values[7] = 0.0f;
     return values;
   };
-  const Fields fields{field(), field(), field(), field()};
-  saveState("saved.tif", grid, fields, {});
+  Snapshot state;
+  state.fields = {field(), field(), field(), field()};
+  const Fields& fields = state.fields;
+  saveState("saved.tif", parameters, state);
   const std::string text =
       "{grid: {size: [1.23, 0.69], spacing: 0.03, origin: [-0.7, 500000]}, bed: {file: saved.tif, band: bed},"
       " sand: [{file: saved.tif, as: depth, band: ";
