@@ -107,7 +107,7 @@ class HostExecutor {
       end_here = seconds();
     });
     const double end = seconds();
-    team_->worth.book(end - begin, (end_here - begin) * count / std::max(done_here, 1), end);
+    team_->worth.book(done_here, end_here - begin, count - done_here, end - end_here, end);
   }
 
   int threads() const { return threads_; }
