@@ -1,49 +1,21 @@
 #include <gtest/gtest.h>
 
-#include "random_bodies.h"
-#include "random_fields.h"
+#include "random_scene.h"
 #include "random_seed.h"
 #include "shallow_sand/scene/geotiff.h"
 
 namespace shallow_sand {
 namespace {
 
-/// A scene with everything that a run can remember.
-struct BusyScene {
-  RandomSand sand;
-  std::vector<Pour> pours;
-  std::vector<RandomBody> bodies;
-  double frame = 0.0;  ///< [s]
+RandomScene busyScene(std::mt19937& random) {
+  RandomSand sand =
+      randomSand(random, 1 + static_cast<int>(random() % 90), 1 + static_cast<int>(random() % 50));
+  sand.parameters.gravity = {uniform(random, -2.0, 2.0), uniform(random, -2.0, 2.0), -9.81};
+  sand.parameters.threads = 1 + static_cast<int>(random() % 2);
+  return randomScene(random, std::move(sand), static_cast<int>(random() % 3), static_cast<int>(random() % 3));
+}
 
-  explicit BusyScene(std::mt19937& random) : sand(randomSand(random, 1 + random() % 90, 1 + random() % 50)) {
-    SimulatorParameters& parameters = sand.parameters;
-    parameters.edges = randomEdges(random);
-    parameters.gravity = {uniform(random, -2.0, 2.0), uniform(random, -2.0, 2.0), -9.81};
-    if (random() % 2 == 0) parameters.solver.reconstruction = Reconstruction::minmod;
-    parameters.threads = 1 + random() % 2;
-    frame = std::sqrt(parameters.grid.spacing / 9.81);
-    const Grid grid = parameters.grid.grid();
-    for (int k = random() % 3; k > 0; --k) {
-      Pour pour;
-      pour.position = randomPlace(random, grid, 0.0);
-      pour.radius = uniform(random, 0.1, 6.0) * grid.spacing;
-      pour.rate = uniform(random, -5.0, 10.0) * std::pow(grid.spacing, 3) / frame;
-      pour.start = uniform(random, 0.0, 8.0) * frame;
-      pours.push_back(pour);
-    }
-    for (int k = random() % 3; k > 0; --k) {
-      bodies.push_back(randomBody(random, grid.spacing));
-      moveThroughSand(random, sand, 15.0 * frame, bodies.back());
-    }
-  }
-
-  Simulator simulator() const {
-    Simulator built(sand.parameters, sand.bed, sand.depth);
-    for (const Pour& pour : pours) built.addPour(pour);
-    for (const RandomBody& body : bodies) addTo(built, body);
-    return built;
-  }
-};
+Simulator simulatorOf(const RandomScene& scene) { return simulatorOf(scene, scene.sand.parameters); }
 
 void run(Simulator& simulator, double frame, int begin, int end) {
   for (int number = begin; number < end; ++number) simulator.advanceTo((number + 1) * frame);
@@ -67,13 +39,13 @@ void expectSame(const Simulator& one, const Simulator& other) {
 TEST(Snapshots, ARunGoesOnBitForBit) {
   std::mt19937 random = seededGenerator();
   for (int number = 0; number < 40; ++number) {
-    const BusyScene scene(random);
-    Simulator whole = scene.simulator();
+    const RandomScene scene = busyScene(random);
+    Simulator whole = simulatorOf(scene);
     run(whole, scene.frame, 0, 20);
     const int half = static_cast<int>(random() % 20);
-    Simulator first = scene.simulator();
+    Simulator first = simulatorOf(scene);
     run(first, scene.frame, 0, half);
-    Simulator second = scene.simulator();
+    Simulator second = simulatorOf(scene);
     second.restore(first.snapshot());
     run(second, scene.frame, half, 20);
     SCOPED_TRACE("scene " + std::to_string(number) + ", taken after frame " + std::to_string(half));
@@ -85,15 +57,15 @@ TEST(Snapshots, ARunGoesOnBitForBit) {
 TEST(Snapshots, ASavedRunGoesOnBitForBit) {
   std::mt19937 random = seededGenerator();
   for (int number = 0; number < 10; ++number) {
-    const BusyScene scene(random);
-    Simulator whole = scene.simulator();
+    const RandomScene scene = busyScene(random);
+    Simulator whole = simulatorOf(scene);
     run(whole, scene.frame, 0, 16);
     {
-      Simulator first = scene.simulator();
+      Simulator first = simulatorOf(scene);
       run(first, scene.frame, 0, 8);
       saveState("half.tif", first.parameters(), first.snapshot());
     }
-    Simulator second = scene.simulator();
+    Simulator second = simulatorOf(scene);
     second.restore(loadState("half.tif", scene.sand.parameters));
     run(second, scene.frame, 8, 16);
     SCOPED_TRACE("scene " + std::to_string(number));
