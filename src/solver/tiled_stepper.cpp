@@ -47,7 +47,11 @@ float TiledStepper::attempt(const StepArguments& arguments, const Window& bodies
   if (!options_.sleeping) tiles_.touch(Window::all(grid_));
   const std::vector<Window>& rectangles = tiles_.due(Walker::kWidest, Walker::kHighest);
   cells_ = 0;
-  for (const Window& cells : rectangles) cells_ += static_cast<long long>(cells.columns()) * cells.rows();
+  stepped_ = Window{};
+  for (const Window& cells : rectangles) {
+    cells_ += static_cast<long long>(cells.columns()) * cells.rows();
+    stepped_ = stepped_.united(cells);
+  }
   executor_.forEachTask(static_cast<int>(rectangles.size()), [&](int task, int thread) {
     const Window& cells = rectangles[task];
     const bool with_bodies = !cells.grown(Tiles::kReach, grid_).overlap(bodies).empty();

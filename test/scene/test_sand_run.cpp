@@ -77,7 +77,8 @@ TEST(SandRun, RefusesBadFilesBeforeItRuns) {
 TEST(SandRun, RefusesBadScenes) {
   expectRefused(sceneFile("grid: {spacing: -1}"), "small.yaml:1: grid.spacing: -1; expected");
   expectRefused(sceneFile("grid: {spacing: [}"), "small.yaml:1");
-  expectRefused(sceneFile("sand: [{file: dem.tif}]"), "not available yet");
+  expectRefused(sceneFile("sand: [{file: dem.tif, as: depth}]"),
+                "small.yaml:1: sand[0].file: ./dem.tif is no file");
   expectRefused(sceneFile("pours: [{position: [90, 90], rate: 1}]"), "pours[0].position");
   expectRefused(
       sceneFile("{solver: {fixed_step: 0.5}, sand: [{cylinder: {center: [2, 1], radius: 0.5, depth: 1}}]}") +

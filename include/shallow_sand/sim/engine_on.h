@@ -121,8 +121,8 @@ class EngineOn : public Engine {
     if (open_.x_min || open_.x_max || open_.y_min || open_.y_max) {
       // Edge faces have no slopes.
       withStep(attempted_, !window_.empty(), false, [&](const auto& step) {
-        executor_.forEachCell(Window::line(static_cast<int>(left_.size())),
-                              CountOutflow<std::decay_t<decltype(step)>>{step, left_.data()});
+        for (const Window& side : perimeterOf(stepper_.stepped(), grid_.columns, grid_.rows))
+          executor_.forEachCell(side, CountOutflow<std::decay_t<decltype(step)>>{step, left_.data()});
       });
     }
     std::swap(state_, next_);

@@ -17,19 +17,20 @@ class GridStepper {
   /// Computes the next state. Returns the largest signal speed of the present one. [m/s]
   /// @param bodies columns that bodies may touch
   float attempt(const StepArguments& arguments, const Window& bodies, const SandFieldsOut& out) {
-    cells_ = static_cast<long long>(arguments.columns) * arguments.rows;
+    stepped_ = {0, 0, arguments.columns, arguments.rows};
     return withStep(arguments, !bodies.empty(), with_slopes_, [&](const auto& step) {
-      return executor_.maximumOverCells(Window{0, 0, step.columns, step.rows},
-                                        StepCell<std::decay_t<decltype(step)>>{step, out});
+      return executor_.maximumOverCells(stepped_, StepCell<std::decay_t<decltype(step)>>{step, out});
     });
   }
+  /// What the last attempt computed: everything.
+  const Window& stepped() const { return stepped_; }
   /// The last attempt is the new state. Returns how many cells it computed.
-  long long accept() { return cells_; }
+  long long accept() { return static_cast<long long>(stepped_.columns()) * stepped_.rows(); }
 
  private:
   Executor& executor_;
   bool with_slopes_;
-  long long cells_ = 0;
+  Window stepped_;
 };
 
 }  // namespace shallow_sand

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <limits>
 
 #include "shallow_sand/device/window.h"
@@ -355,7 +356,7 @@ struct StepCell {
 
 /// Adds to `left`, one double for each cell of the perimeter, the depth that leaves it through open edges in
 /// a step. Calls (0, k): k counts the cells of the southern row, the northern row, the western and the
-/// eastern column.
+/// eastern column (see perimeterOf).
 template <class Step>
 struct CountOutflow {
   Step step;
@@ -378,6 +379,18 @@ struct CountOutflow {
     left[k] += static_cast<double>(step.per_length * out);
   }
 };
+
+/// The parts of the perimeter that lie in a window of the grid, as lines for CountOutflow: south, north,
+/// west, east.
+inline std::array<Window, 4> perimeterOf(const Window& cells, int columns, int rows) {
+  const auto line = [](bool touches, int start, int begin, int end) {
+    return touches ? Window{0, start + begin, 1, start + end} : Window{};
+  };
+  return {line(cells.row_begin == 0, 0, cells.column_begin, cells.column_end),
+          line(cells.row_end == rows, columns, cells.column_begin, cells.column_end),
+          line(cells.column_begin == 0, 2 * columns, cells.row_begin, cells.row_end),
+          line(cells.column_end == columns, 2 * columns + rows, cells.row_begin, cells.row_end)};
+}
 
 /// Calls function(Step<…>) with the kind of step that these arguments need.
 template <class Function>

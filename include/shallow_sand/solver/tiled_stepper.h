@@ -28,6 +28,8 @@ class TiledStepper {
   /// Computes the next state. Returns the largest signal speed of the present one. [m/s]
   /// @param bodies columns that bodies may touch
   float attempt(const StepArguments& arguments, const Window& bodies, const SandFieldsOut& out);
+  /// A window that holds all cells that the last attempt computed.
+  const Window& stepped() const { return stepped_; }
   /// The last attempt is the new state. Returns how many cells it computed.
   long long accept();
 
@@ -38,6 +40,7 @@ class TiledStepper {
   Tiles tiles_;
   std::vector<HostExecutor::Memory<float>> scratch_;  // one for each thread
   long long cells_ = 0;
+  Window stepped_;
 };
 
 }  // namespace shallow_sand
