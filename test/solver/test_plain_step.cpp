@@ -74,8 +74,10 @@ void addAll(const RandomScene& scene, Engine& engine) {
   const Grid grid = scene.sand.parameters.grid.grid();
   for (const RandomBody& body : scene.bodies) engine.addBody(*body.field);
   for (const Pour& pour : scene.pours) {
-    engine.addPour(static_cast<float>(pour.position.x() - grid.origin_x),
-                   static_cast<float>(pour.position.y() - grid.origin_y), static_cast<float>(pour.radius));
+    Region region;
+    region.center = pour.position;
+    region.radius = pour.radius;
+    engine.addPour(localRegion(region, grid));
   }
 }
 
