@@ -45,7 +45,7 @@ struct Cell {
   float b;
   float c;            ///< speed of waves [m/s]
   float s;            ///< surface, h + b [m]
-  float wet_surface;  ///< s where there is sand, below everything where there is none [m]
+  float wet_surface;  ///< s where there is sand that can flow, below everything elsewhere [m]
   float room;  ///< depth that still fits under a body [m]; kClosed where the cell is a wall to its neighbours
   LocalMaterial material;
 };
@@ -116,7 +116,7 @@ struct Step : StepArguments {
     cell.h = h;
     cell.b = b;
     cell.s = h + b;
-    cell.wet_surface = h > 0.0f ? cell.s : -std::numeric_limits<float>::max();
+    cell.wet_surface = h > sand.film ? cell.s : -std::numeric_limits<float>::max();
     const float inverse = inverseDepth(h, sand);
     cell.u = inverse * hu;
     cell.v = inverse * hv;
