@@ -25,7 +25,7 @@ FieldMemory::FieldMemory(std::size_t bytes) {
   // Several fields are read side by side. If all began at the same place of a page, each of their rows would
   // need the same few lines of a cache.
   const auto address = reinterpret_cast<std::uintptr_t>(block_.get());
-  const std::uintptr_t line = (9 * (address / kPage + address / kHugePage)) % (kPage / kLine);
+  const std::uintptr_t line = 1 + (9 * (address / kPage + address / kHugePage)) % (kPage / kLine - 1);
   begin_ = static_cast<char*>(block_.get()) + line * kLine;
 }
 

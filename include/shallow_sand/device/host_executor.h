@@ -35,7 +35,8 @@ class FieldMemory {
 /// changes no bit.
 class HostExecutor {
  public:
-  /// Values past the end may be read, up to two vectors of floats: a loop over rows need not stop short.
+  /// A few values before the begin and past the end may be read, up to two vectors of floats: a loop over
+  /// rows need not stop short.
   template <class T>
   class Memory {
    public:
@@ -60,7 +61,7 @@ class HostExecutor {
   /// Calls function(i, j) once for every cell of the window.
   template <class Function>
   void forEachCell(const Window& window, const Function& function) const {
-#pragma omp parallel for num_threads(threads_) schedule(static) if (window.rows() > 1)
+#pragma omp parallel for num_threads(threads_) schedule(static) if (isWorthThreads(window))
     for (int j = window.row_begin; j < window.row_end; ++j) {
 #pragma omp simd
       for (int i = window.column_begin; i < window.column_end; ++i) function(i, j);
@@ -113,6 +114,11 @@ class HostExecutor {
   int threads() const { return threads_; }
 
  private:
+  /// To wake a thread takes as long as some hundred cells.
+  static bool isWorthThreads(const Window& window) {
+    return window.rows() > 1 && window.columns() * window.rows() >= 512;
+  }
+
   struct alignas(64) Share {  // a cache line of its own
     std::atomic<int> next{0};
   };

@@ -143,7 +143,8 @@ SHALLOW_SAND_HOST_DEVICE inline Momentum applyFriction(Momentum q, Momentum rate
   const float reach = repose_rise * sand.gravity_per_spacing * layer;  // e₂/Δt
   const float rest = 1.0f - reach / maximum(size, 1e-30f);
   const bool held = size <= 1.001f * reach;
-  return {held ? 0.0f : q.x * rest, held ? 0.0f : q.y * rest};
+  // Adding 0 leaves no negative zeros, which would be bits that the next step changes.
+  return {held ? 0.0f : q.x * rest + 0.0f, held ? 0.0f : q.y * rest + 0.0f};
 }
 
 }  // namespace shallow_sand
