@@ -17,7 +17,7 @@ class RowWalker {
   /// Widest rectangle that is asked for [cells]; what its rows need leaves room in the first cache for those
   /// that are fetched ahead. The last tile of a row may make it wider by almost a tile.
   static constexpr int kWidest = 4 * Tiles::kColumns;
-  static constexpr int kHighest = 4 * Tiles::kRows;
+  static constexpr int kHighest = 8 * Tiles::kRows;
   /// Floats of scratch memory.
   static constexpr int scratchSize() { return kScratch; }
 

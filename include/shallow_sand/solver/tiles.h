@@ -24,7 +24,7 @@ struct TileActivity {
 class Tiles {
  public:
   static constexpr int kColumns = 32;
-  static constexpr int kRows = 16;
+  static constexpr int kRows = 8;
   /// How many cells away a cell can feel another in one step; less than a tile is wide.
   static constexpr int kReach = 2;
 
