@@ -150,7 +150,8 @@ std::string SceneValue::text() const {
 
 std::string SceneValue::path() const {
   const std::string written = text();
-  // Among them the one that ends a text for the system: it would open another file than the one that is named.
+  // Among them the one that ends a text for the system: it would open another file than the one that is
+  // named.
   if (std::any_of(written.begin(), written.end(), [](unsigned char c) { return std::iscntrl(c) != 0; })) {
     fail("a path without control characters");
   }
