@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "gdal_support.h"
+#include "shallow_sand/device/window_part.h"
 #include "shallow_sand/scene/scene.h"
 #include "state_metadata.h"
 
@@ -40,23 +41,6 @@ DatasetPointer createTiff(const std::string& path, const Grid& grid, int bands) 
                                   0.0,           -spacing};
   requireGdal(dataset->SetGeoTransform(transform.data()) == CE_None, path);
   return dataset;
-}
-
-/// Contacts fill a window of the grid; their bands are 0 elsewhere.
-std::vector<float> onGrid(const std::vector<float>& part, const Window& window, const Grid& grid) {
-  std::vector<float> values(grid.cells(), 0.0f);
-  auto row = part.begin();
-  for (int j = window.row_begin; j < window.row_end; ++j, row += window.columns())
-    std::copy_n(row, window.columns(), &values[grid.index(window.column_begin, j)]);
-  return values;
-}
-std::vector<float> inWindow(const std::vector<float>& values, const Window& window, const Grid& grid) {
-  std::vector<float> part;
-  for (int j = window.row_begin; j < window.row_end; ++j) {
-    const auto* row = &values[grid.index(0, j)];
-    part.insert(part.end(), row + window.column_begin, row + window.column_end);
-  }
-  return part;
 }
 
 void requireSizes(const std::string& path, const Grid& grid, const Snapshot& state) {
@@ -100,7 +84,7 @@ Snapshot readState(GDALDataset& dataset, const SimulatorParameters& parameters, 
   std::vector<float> values(grid.cells());
   for (const auto& band : contactBands(state)) {
     transferNorthUp(bandNamed(dataset, band.first), GF_Read, values.data(), grid, path);
-    *band.second = inWindow(values, window, grid);
+    *band.second = partOf(values, window, grid);
   }
   return state;
 }
@@ -120,7 +104,11 @@ void saveState(const std::string& path, const SimulatorParameters& parameters, c
   };
   for (const auto& band : fieldBands(state)) write(band.first, *band.second);
   if (!window.empty()) {
-    for (const auto& band : contactBands(state)) write(band.first, onGrid(*band.second, window, grid));
+    std::vector<float> values(grid.cells(), 0.0f);
+    for (const auto& band : contactBands(state)) {
+      putPart(*band.second, window, grid, values);
+      write(band.first, values);
+    }
   }
   for (const auto& item : stateMetadata(parameters, state)) {
     requireGdal(dataset->SetMetadataItem(item.first.c_str(), item.second.c_str(), kDomain) == CE_None, path);

@@ -172,14 +172,22 @@ class Simulator::Implementation {
   double edit(const Edit& edit) {
     edit.validate();
     const LocalRegion region = localRegion(edit.region, grid_);
-    if (shallow_sand::windowOf(region, grid_).empty()) requireOnGrid("center", edit.region.center);
+    if (windowOf(region, grid_).empty()) requireOnGrid("center", edit.region.center);
     // Sand may have come to lie where a body is.
     placed_anew_ = placed_anew_ || !bodies_.empty();
     return engine_->edit(region, edit.operation, static_cast<float>(edit.value));
   }
 
   Snapshot snapshot() const {
-    return {engine_->fields(), engine_->contacts(), !placed_anew_, time_, trial_, progress_, ledger()};
+    Snapshot snapshot;
+    snapshot.fields = engine_->fields();
+    snapshot.contacts = engine_->contacts();
+    snapshot.bodies_cleared = !placed_anew_;
+    snapshot.time = time_;
+    snapshot.next_step = trial_;
+    snapshot.progress = progress_;
+    snapshot.ledger = ledgerOf(snapshot.fields.depth);
+    return snapshot;
   }
 
   void restore(const Snapshot& snapshot) {
@@ -220,7 +228,7 @@ class Simulator::Implementation {
     if (window.united(Window::all(grid_)).columns() != grid_.columns ||
         window.united(Window::all(grid_)).rows() != grid_.rows)
       throw InvalidParameter("contacts", "a window that reaches beyond the grid", "one on the grid");
-    const std::size_t cells = static_cast<std::size_t>(window.columns()) * window.rows();
+    const std::size_t cells = window.cells();
     for (const auto* values :
          {&contacts.ceiling, &contacts.length, &contacts.velocity_x, &contacts.velocity_y}) {
       const bool valid =
@@ -358,24 +366,15 @@ class Simulator::Implementation {
     }
     view.low = toVector3(box.min());
     view.high = toVector3(box.max());
-    placed.window = windowOf(box);
+    placed.window = Window::around(box.min().x(), box.min().y(), box.max().x(), box.max().y(), grid_);
     return placed;
   }
 
-  /// Cells whose centre may lie under the box.
-  Window windowOf(const Eigen::AlignedBox3d& box) const {
-    const auto clamp = [&](double position, int count) {
-      return static_cast<int>(
-          std::clamp(std::floor(position / grid_.spacing), 0.0, static_cast<double>(count)));
-    };
-    return {clamp(box.min().x(), grid_.columns), clamp(box.min().y(), grid_.rows),
-            clamp(box.max().x() + grid_.spacing, grid_.columns),
-            clamp(box.max().y() + grid_.spacing, grid_.rows)};
-  }
+  Ledger ledger() const { return ledgerOf(engine_->fields().depth); }
 
-  Ledger ledger() const {
+  Ledger ledgerOf(const std::vector<float>& depth) const {
     return {start_volume_, poured_before_ + engine_->poured(), left_before_ + engine_->left(),
-            sum(engine_->fields().depth) * grid_.cellArea()};
+            sum(depth) * grid_.cellArea()};
   }
 
   /// Speeds are known only once a step has read them. A step is tried that is a little shorter than the bound

@@ -17,14 +17,10 @@ LocalRegion localRegion(const Region& region, const Grid& grid) {
 }
 
 Window windowOf(const LocalRegion& region, const Grid& grid) {
-  const auto cell = [&](float position, int count) {
-    return static_cast<int>(std::clamp(std::floor(position / grid.spacing), 0.0f, static_cast<float>(count)));
-  };
   const float x = region.radius >= 0.0f ? region.radius : region.half_x;
   const float y = region.radius >= 0.0f ? region.radius : region.half_y;
-  return {cell(region.center_x - x, grid.columns), cell(region.center_y - y, grid.rows),
-          cell(region.center_x + x + grid.spacing, grid.columns),
-          cell(region.center_y + y + grid.spacing, grid.rows)};
+  return Window::around(region.center_x - x, region.center_y - y, region.center_x + x, region.center_y + y,
+                        grid);
 }
 
 }  // namespace shallow_sand

@@ -49,7 +49,7 @@ float TiledStepper::attempt(const StepArguments& arguments, const Window& bodies
   cells_ = 0;
   stepped_ = Window{};
   for (const Window& cells : rectangles) {
-    cells_ += static_cast<long long>(cells.columns()) * cells.rows();
+    cells_ += static_cast<long long>(cells.cells());
     stepped_ = stepped_.united(cells);
   }
   executor_.forEachTask(static_cast<int>(rectangles.size()), [&](int task, int thread) {

@@ -28,10 +28,7 @@ class BareFields {
     step.sand = sandConstants(grid_, parameters_.gravity, parameters_.material);
     step.columns = grid_.columns;
     step.rows = grid_.rows;
-    step.dt = dt;
-    step.per_time = 1.0f / dt;
-    step.rate = grid_.spacing / dt;
-    step.per_length = dt / grid_.spacing;
+    step.setTimeStep(dt);
     return step;
   }
   SandFieldsOut out() {

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
 #include "shallow_sand/core/grid.h"
 
 namespace shallow_sand {
@@ -15,8 +19,19 @@ struct Window {
   /// `count` cells in one column, for work that has one index.
   static Window line(int count) { return {0, 0, 1, count}; }
 
+  /// Cells whose centres may lie between these places, which are relative to the corner of cell (0, 0). [m]
+  static Window around(double low_x, double low_y, double high_x, double high_y, const Grid& grid) {
+    const double spacing = static_cast<double>(grid.spacing);
+    const auto cell = [&](double position, int count) {
+      return static_cast<int>(std::clamp(std::floor(position / spacing), 0.0, static_cast<double>(count)));
+    };
+    return {cell(low_x, grid.columns), cell(low_y, grid.rows), cell(high_x + spacing, grid.columns),
+            cell(high_y + spacing, grid.rows)};
+  }
+
   SHALLOW_SAND_HOST_DEVICE int columns() const { return column_end - column_begin; }
   SHALLOW_SAND_HOST_DEVICE int rows() const { return row_end - row_begin; }
+  std::size_t cells() const { return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()); }
   bool empty() const { return columns() <= 0 || rows() <= 0; }
 
   /// The smallest rectangle that holds both.

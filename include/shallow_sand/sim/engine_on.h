@@ -8,6 +8,7 @@
 
 #include "shallow_sand/coupling/displacement.h"
 #include "shallow_sand/coupling/rays.h"
+#include "shallow_sand/device/window_part.h"
 #include "shallow_sand/sim/engine.h"
 #include "shallow_sand/solver/change_sand.h"
 
@@ -64,7 +65,7 @@ class EngineOn : public Engine {
       for (int i = window.column_begin; i < window.column_end; ++i)
         pour.covered += pour.change.covers(i, j) ? 1 : 0;
     }
-    pour.taken = Memory<double>(cellsOf(window), 0.0);
+    pour.taken = Memory<double>(window.cells(), 0.0);
     pours_.push_back(std::move(pour));
   }
 
@@ -118,13 +119,11 @@ class EngineOn : public Engine {
   }
 
   long long accept() override {
-    if (open_.x_min || open_.x_max || open_.y_min || open_.y_max) {
-      // Edge faces have no slopes.
-      withStep(attempted_, !window_.empty(), false, [&](const auto& step) {
-        for (const Window& side : perimeterOf(stepper_.stepped(), grid_.columns, grid_.rows))
-          executor_.forEachCell(side, CountOutflow<std::decay_t<decltype(step)>>{step, left_.data()});
-      });
-    }
+    // Edge faces have no slopes.
+    withStep(attempted_, !window_.empty(), false, [&](const auto& step) {
+      for (const Window& side : perimeterOf(stepper_.stepped(), open_, grid_.columns, grid_.rows))
+        executor_.forEachCell(side, CountOutflow<std::decay_t<decltype(step)>>{step, left_.data()});
+    });
     std::swap(state_, next_);
     return stepper_.accept();
   }
@@ -141,7 +140,7 @@ class EngineOn : public Engine {
     ChangeSand change = changeOf(region);
     change.operation = operation;
     change.value = value;
-    Memory<double> taken(cellsOf(change.window), 0.0);
+    Memory<double> taken(change.window.cells(), 0.0);
     apply(change, taken);
     double grown = 0.0;
     for (const double depth : downloaded(taken)) {
@@ -170,11 +169,8 @@ class EngineOn : public Engine {
 
   double bodyOverlap() const override {
     if (window_.empty()) return 0.0;
-    const std::vector<float> overlap = downloaded(contacts_.front().overlap);
-    double depth = 0.0;
-    for (int j = window_.row_begin; j < window_.row_end; ++j) {
-      for (int i = window_.column_begin; i < window_.column_end; ++i) depth += overlap[grid_.index(i, j)];
-    }
+    const std::vector<float> overlap = inWindow(contacts_.front().overlap);
+    const double depth = std::accumulate(overlap.begin(), overlap.end(), 0.0);
     return depth * grid_.cellArea();
   }
 
@@ -183,10 +179,10 @@ class EngineOn : public Engine {
     snapshot.window = window_;
     if (window_.empty()) return snapshot;
     const Contacts& c = contacts_.front();
-    snapshot.ceiling = cut(downloaded(c.ceiling));
-    snapshot.length = cut(downloaded(c.length));
-    snapshot.velocity_x = cut(downloaded(c.velocity_x));
-    snapshot.velocity_y = cut(downloaded(c.velocity_y));
+    snapshot.ceiling = inWindow(c.ceiling);
+    snapshot.length = inWindow(c.length);
+    snapshot.velocity_x = inWindow(c.velocity_x);
+    snapshot.velocity_y = inWindow(c.velocity_y);
     return snapshot;
   }
 
@@ -199,10 +195,10 @@ class EngineOn : public Engine {
     if (contacts_.empty()) return;
     contacts_.front() = Contacts(grid_.cells());
     Contacts& c = contacts_.front();
-    pasteInto(c.ceiling, contacts.ceiling);
-    pasteInto(c.length, contacts.length);
-    pasteInto(c.velocity_x, contacts.velocity_x);
-    pasteInto(c.velocity_y, contacts.velocity_y);
+    putInWindow(contacts.ceiling, c.ceiling);
+    putInWindow(contacts.length, c.length);
+    putInWindow(contacts.velocity_x, c.velocity_x);
+    putInWindow(contacts.velocity_y, c.velocity_y);
   }
 
  private:
@@ -259,25 +255,12 @@ class EngineOn : public Engine {
     stepper_.touch(change.window);
   }
 
-  static std::size_t cellsOf(const Window& window) {
-    return static_cast<std::size_t>(window.columns()) * static_cast<std::size_t>(window.rows());
+  std::vector<float> inWindow(const Memory<float>& field) const {
+    return partOf(downloaded(field), window_, grid_);
   }
-
-  /// The part of a field that lies in window_, row-major.
-  std::vector<float> cut(const std::vector<float>& field) const {
-    std::vector<float> part;
-    for (int j = window_.row_begin; j < window_.row_end; ++j) {
-      const auto row = field.begin() + static_cast<std::ptrdiff_t>(grid_.index(0, j));
-      part.insert(part.end(), row + window_.column_begin, row + window_.column_end);
-    }
-    return part;
-  }
-  void pasteInto(Memory<float>& field, const std::vector<float>& part) const {
+  void putInWindow(const std::vector<float>& part, Memory<float>& field) const {
     std::vector<float> values = downloaded(field);
-    auto row = part.begin();
-    for (int j = window_.row_begin; j < window_.row_end; ++j, row += window_.columns())
-      std::copy_n(row, window_.columns(),
-                  values.begin() + static_cast<std::ptrdiff_t>(grid_.index(window_.column_begin, j)));
+    putPart(part, window_, grid_, values);
     field.upload(values.data(), values.size());
   }
 
@@ -318,10 +301,7 @@ class EngineOn : public Engine {
     step.open = open_;
     step.columns = grid_.columns;
     step.rows = grid_.rows;
-    step.dt = dt;
-    step.per_time = 1.0f / dt;
-    step.rate = grid_.spacing / dt;
-    step.per_length = dt / grid_.spacing;
+    step.setTimeStep(dt);
     return step;
   }
 

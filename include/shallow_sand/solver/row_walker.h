@@ -55,7 +55,8 @@ class RowWalker {
 
   void walk() {
     const int begin = cells_.row_begin;
-    prepareEdges();
+    if (atWest()) prepareEdge<true>(west_, west_flux_);
+    if (atEast()) prepareEdge<false>(east_, east_flux_);
     if (Step::with_slopes) load(before_, begin - 2);
     load(own_, begin - 1);
     load(next_, begin);
@@ -250,35 +251,23 @@ class RowWalker {
   bool atWest() const { return cells_.column_begin == 0; }
   bool atEast() const { return cells_.column_end == step_.columns; }
 
-  /// What stands beyond the western and the eastern edge of the grid, and the faces there, for all rows at
+  /// What stands beyond the western or the eastern edge of the grid, and the faces there, for all rows at
   /// once.
-  void prepareEdges() {
+  template <bool west>
+  void prepareEdge(const Row& outside_rows, const Fluxes& edge_fluxes) const {
     const Step step = step_;
-    const int rows = cells_.rows();
+    const Row outside = outside_rows;
+    const Fluxes flux = edge_fluxes;
+    const int column = west ? 0 : step.columns - 1;
     const int begin = cells_.row_begin;
-    if (atWest()) {
-      const Row outside = west_;
-      const Fluxes flux = west_flux_;
+    const int rows = cells_.rows();
 #pragma GCC ivdep
-      for (int r = 0; r < rows; ++r) {
-        const Cell own = step.load(step.index(0, begin + r));
-        const Cell beyond = step.beyondWest(own, begin + r);
-        const FaceFlux edge = step.westEdge(beyond, own);
-        outside.set(r, beyond);
-        flux.setEdge(r, edge, edge.momentum_right);
-      }
-    }
-    if (atEast()) {
-      const Row outside = east_;
-      const Fluxes flux = east_flux_;
-#pragma GCC ivdep
-      for (int r = 0; r < rows; ++r) {
-        const Cell own = step.load(step.index(step.columns - 1, begin + r));
-        const Cell beyond = step.beyondEast(own, begin + r);
-        const FaceFlux edge = step.eastEdge(own, beyond);
-        outside.set(r, beyond);
-        flux.setEdge(r, edge, edge.momentum_left);
-      }
+    for (int r = 0; r < rows; ++r) {
+      const Cell own = step.load(step.index(column, begin + r));
+      const Cell beyond = west ? step.beyondWest(own, begin + r) : step.beyondEast(own, begin + r);
+      const FaceFlux edge = west ? step.westEdge(beyond, own) : step.eastEdge(own, beyond);
+      outside.set(r, beyond);
+      flux.setEdge(r, edge, west ? edge.momentum_right : edge.momentum_left);
     }
   }
 

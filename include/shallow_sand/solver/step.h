@@ -86,6 +86,14 @@ struct StepArguments {
   float per_time;    ///< 1/Δt [1/s]
   float rate;        ///< ΔL/Δt [m/s]
   float per_length;  ///< Δt/ΔL [s/m]
+
+  /// Sets Δt [s] and what follows from it; `sand` must be there already.
+  void setTimeStep(float seconds) {
+    dt = seconds;
+    per_time = 1.0f / dt;
+    rate = sand.spacing / dt;
+    per_length = dt / sand.spacing;
+  }
 };
 
 /// A step (Eq. 8–10) as pure functions of cells and faces; all read the state at time t only. A backend may
@@ -380,16 +388,17 @@ struct CountOutflow {
   }
 };
 
-/// The parts of the perimeter that lie in a window of the grid, as lines for CountOutflow: south, north,
+/// The open parts of the perimeter that lie in a window of the grid, as lines for CountOutflow: south, north,
 /// west, east.
-inline std::array<Window, 4> perimeterOf(const Window& cells, int columns, int rows) {
-  const auto line = [](bool touches, int start, int begin, int end) {
-    return touches ? Window{0, start + begin, 1, start + end} : Window{};
+inline std::array<Window, 4> perimeterOf(const Window& cells, const OpenEdges& open, int columns, int rows) {
+  const auto line = [](bool counts, int start, int begin, int end) {
+    return counts ? Window{0, start + begin, 1, start + end} : Window{};
   };
-  return {line(cells.row_begin == 0, 0, cells.column_begin, cells.column_end),
-          line(cells.row_end == rows, columns, cells.column_begin, cells.column_end),
-          line(cells.column_begin == 0, 2 * columns, cells.row_begin, cells.row_end),
-          line(cells.column_end == columns, 2 * columns + rows, cells.row_begin, cells.row_end)};
+  return {
+      line(open.y_min && cells.row_begin == 0, 0, cells.column_begin, cells.column_end),
+      line(open.y_max && cells.row_end == rows, columns, cells.column_begin, cells.column_end),
+      line(open.x_min && cells.column_begin == 0, 2 * columns, cells.row_begin, cells.row_end),
+      line(open.x_max && cells.column_end == columns, 2 * columns + rows, cells.row_begin, cells.row_end)};
 }
 
 /// Calls function(Step<…>) with the kind of step that these arguments need.
