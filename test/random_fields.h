@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -40,6 +42,30 @@ inline std::vector<float> randomWaves(std::mt19937& random, const Grid& grid) {
 
 inline bool sameBits(const std::vector<float>& a, const std::vector<float>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+}
+
+inline void expectSameBits(const Fields& a, const Fields& b) {
+  EXPECT_TRUE(sameBits(a.bed, b.bed));
+  EXPECT_TRUE(sameBits(a.depth, b.depth));
+  EXPECT_TRUE(sameBits(a.momentum_x, b.momentum_x));
+  EXPECT_TRUE(sameBits(a.momentum_y, b.momentum_y));
+}
+
+/// A size in cells.
+struct Size {
+  int columns;
+  int rows;
+};
+
+/// A whole number from `least` to `most`.
+inline int randomCount(std::mt19937& random, int least, int most) {
+  return least + static_cast<int>(random() % static_cast<unsigned>(most - least + 1));
+}
+
+/// Gravity that leans by at most `most` along each axis. [m/s²]
+inline Eigen::Vector3d randomGravity(std::mt19937& random, double most) {
+  const double x = uniform(random, -most, most);
+  return {x, uniform(random, -most, most), -9.81};
 }
 
 /// Parameters and fields of a valid simulation: uneven bed with rocks that stand out, dry ground, steep sand.
@@ -96,7 +122,7 @@ inline RandomSand heldSand(std::mt19937& random, int columns, int rows, double l
   RandomSand sand = randomSand(random, columns, rows);
   const Grid grid = sand.parameters.grid.grid();
   const double friction = std::tan(sand.parameters.material.friction_angle);
-  sand.parameters.gravity = {uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0), -9.81};
+  sand.parameters.gravity = randomGravity(random, 3.0);
   std::vector<float> surface = randomWaves(random, grid);
   double steepest = 1e-6;
   for (int j = 0; j < grid.rows; ++j) {

@@ -17,13 +17,13 @@ struct RandomScene {
   double frame = 0.0;  ///< time of a few steps, to advance by [s]
 };
 
-/// A pour that starts and stops within ten frames.
+/// A pour, or a drain, that starts and stops within ten frames.
 inline Pour randomPour(std::mt19937& random, const RandomScene& scene) {
   const double spacing = scene.sand.parameters.grid.spacing;
   Pour pour;
   pour.position = randomPlace(random, scene.sand.parameters.grid.grid(), 0.0);
   pour.radius = uniform(random, 0.1, 6.0) * spacing;
-  pour.rate = uniform(random, 0.0, 10.0) * spacing * spacing * spacing / scene.frame;
+  pour.rate = uniform(random, -5.0, 10.0) * spacing * spacing * spacing / scene.frame;
   pour.start = uniform(random, 0.0, 2.0) * scene.frame;
   pour.stop = pour.start + uniform(random, 1.0, 8.0) * scene.frame;
   return pour;

@@ -33,7 +33,7 @@ RandomSand deepRestingSand(std::mt19937& random) {
 RandomSand movingSand(std::mt19937& random) {
   const int columns = randomCount(random);
   RandomSand sand = randomSand(random, columns, randomCount(random));
-  sand.parameters.gravity = {uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0), -9.81};
+  sand.parameters.gravity = randomGravity(random, 3.0);
   return sand;
 }
 

@@ -17,17 +17,12 @@ Simulator simulatorOn(Backend backend, const RandomScene& scene) {
 
 RandomScene tiltedScene(std::mt19937& random, int columns, int rows, int pours, int bodies) {
   RandomSand sand = randomSand(random, columns, rows);
-  sand.parameters.gravity = {uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0), -9.81};
+  sand.parameters.gravity = randomGravity(random, 3.0);
   return randomScene(random, std::move(sand), pours, bodies);
 }
 
 void expectSame(const Simulator& cpu, const Simulator& cuda) {
-  const Fields a = cpu.fields();
-  const Fields b = cuda.fields();
-  EXPECT_TRUE(sameBits(a.bed, b.bed));
-  EXPECT_TRUE(sameBits(a.depth, b.depth));
-  EXPECT_TRUE(sameBits(a.momentum_x, b.momentum_x));
-  EXPECT_TRUE(sameBits(a.momentum_y, b.momentum_y));
+  expectSameBits(cpu.fields(), cuda.fields());
   const Ledger one = cpu.ledger();
   const Ledger other = cuda.ledger();
   EXPECT_EQ(one.start, other.start);
@@ -66,11 +61,6 @@ class CudaParity : public ::testing::Test {
       GTEST_SKIP() << reason.what();
     }
   }
-};
-
-struct Size {
-  int columns;
-  int rows;
 };
 
 /// Blocks of the launcher are 32 cells wide and 4 high: one cell, single rows and columns, just under, at and

@@ -9,18 +9,14 @@
 #include "random_seed.h"
 #include "shallow_sand/scene/geotiff.h"
 #include "shallow_sand/scene/scene.h"
+#include "terrain_files.h"
 
 namespace shallow_sand {
 namespace {
 
-struct Close {
-  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
-};
-using Dataset = std::unique_ptr<GDALDataset, Close>;
-
-Dataset open(const std::string& path) {
+ImagePointer open(const std::string& path) {
   GDALAllRegister();
-  return Dataset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
+  return ImagePointer(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
 }
 
 SimulatorParameters oddParameters() {
@@ -68,7 +64,7 @@ TEST(GeoTiff, KeepsEveryBitWithNorthOnTop) {
   const Grid grid = parameters.grid.grid();
   const Fields fields = randomFields(grid);
   saveState("state.tif", parameters, stateOf(fields));
-  const Dataset dataset = open("state.tif");
+  const ImagePointer dataset = open("state.tif");
   ASSERT_NE(dataset, nullptr);
   ASSERT_EQ(dataset->GetRasterCount(), 4);
   const std::vector<std::pair<std::string, const std::vector<float>*>> bands{
@@ -94,7 +90,7 @@ TEST(GeoTiff, PlacesCellsWhereTheGridDoes) {
   const SimulatorParameters parameters = oddParameters();
   const Grid grid = parameters.grid.grid();
   saveState("placed.tif", parameters, stateOf(randomFields(grid)));
-  const Dataset dataset = open("placed.tif");
+  const ImagePointer dataset = open("placed.tif");
   std::array<double, 6> transform{};
   ASSERT_EQ(dataset->GetGeoTransform(transform.data()), CE_None);
   const auto x = [&](int column) { return transform[0] + (column + 0.5) * transform[1]; };
@@ -116,7 +112,7 @@ TEST(GeoTiff, MetadataBringsBackEveryBitOfASimulation) {
   simulator.advance(0.1);
   saveState("simulated.tif", parameters, simulator.snapshot());
 
-  const Dataset dataset = open("simulated.tif");
+  const ImagePointer dataset = open("simulated.tif");
   const auto item = [&](const char* key) {
     const char* text = dataset->GetMetadataItem(key, "SHALLOW_SAND");
     EXPECT_NE(text, nullptr) << key;

@@ -10,7 +10,7 @@ namespace {
 RandomScene busyScene(std::mt19937& random) {
   RandomSand sand =
       randomSand(random, 1 + static_cast<int>(random() % 90), 1 + static_cast<int>(random() % 50));
-  sand.parameters.gravity = {uniform(random, -2.0, 2.0), uniform(random, -2.0, 2.0), -9.81};
+  sand.parameters.gravity = randomGravity(random, 2.0);
   sand.parameters.threads = 1 + static_cast<int>(random() % 2);
   return randomScene(random, std::move(sand), static_cast<int>(random() % 3), static_cast<int>(random() % 3));
 }
@@ -22,12 +22,7 @@ void run(Simulator& simulator, double frame, int begin, int end) {
 }
 
 void expectSame(const Simulator& one, const Simulator& other) {
-  const Fields a = one.fields();
-  const Fields b = other.fields();
-  EXPECT_TRUE(sameBits(a.bed, b.bed));
-  EXPECT_TRUE(sameBits(a.depth, b.depth));
-  EXPECT_TRUE(sameBits(a.momentum_x, b.momentum_x));
-  EXPECT_TRUE(sameBits(a.momentum_y, b.momentum_y));
+  expectSameBits(one.fields(), other.fields());
   EXPECT_EQ(one.time(), other.time());
   EXPECT_EQ(one.progress().steps, other.progress().steps);
   EXPECT_EQ(one.progress().last_step, other.progress().last_step);

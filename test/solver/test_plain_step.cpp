@@ -82,11 +82,8 @@ void addAll(const RandomScene& scene, Engine& engine) {
 }
 
 void expectSame(const Engine& plain, const Engine& tiled) {
-  const Fields a = plain.fields();
-  const Fields b = tiled.fields();
-  ASSERT_TRUE(sameBits(a.depth, b.depth));
-  ASSERT_TRUE(sameBits(a.momentum_x, b.momentum_x));
-  ASSERT_TRUE(sameBits(a.momentum_y, b.momentum_y));
+  expectSameBits(plain.fields(), tiled.fields());
+  ASSERT_FALSE(::testing::Test::HasFailure());
   ASSERT_EQ(plain.left(), tiled.left());
   ASSERT_EQ(plain.poured(), tiled.poured());
 }
@@ -126,15 +123,8 @@ void compare(std::mt19937& random, const RandomScene& scene, int steps) {
   }
 }
 
-struct Size {
-  int columns;
-  int rows;
-};
-
 Size randomSize(std::mt19937& random, int scene) {
-  const auto count = [&](int least, int most) {
-    return least + static_cast<int>(random() % static_cast<unsigned>(most - least + 1));
-  };
+  const auto count = [&](int least, int most) { return randomCount(random, least, most); };
   switch (scene % 4) {
     case 0:
       return {count(1, 6), count(1, 6)};
@@ -156,8 +146,7 @@ TEST(PlainStep, CellByCellGivesTheSameBitsAsRowsOfTilesThatSleep) {
     RandomSand sand = random() % 2 == 0
                           ? randomSand(random, size.columns, size.rows)
                           : heldSand(random, size.columns, size.rows, uniform(random, 0.0, 10.0));
-    if (random() % 2 == 0)
-      sand.parameters.gravity = {uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0), -9.81};
+    if (random() % 2 == 0) sand.parameters.gravity = randomGravity(random, 3.0);
     const RandomScene scene =
         randomScene(random, std::move(sand), static_cast<int>(random() % 2), static_cast<int>(random() % 2));
     ASSERT_NO_FATAL_FAILURE(compare(random, scene, 60));

@@ -11,17 +11,10 @@ namespace {
 constexpr int kScenes = 100;
 constexpr int kFrames = 4;
 
-struct Size {
-  int columns;
-  int rows;
-};
-
 /// Sizes that are no multiple of anything: small ones, down to a single cell; long thin ones; such that take
 /// more than one rectangle along x; and such of many tiles.
 Size randomSize(std::mt19937& random, int scene) {
-  const auto count = [&](int least, int most) {
-    return least + static_cast<int>(random() % static_cast<unsigned>(most - least + 1));
-  };
+  const auto count = [&](int least, int most) { return randomCount(random, least, most); };
   switch (scene % 5) {
     case 0:
       return {count(1, 4), count(1, 4)};
@@ -41,8 +34,7 @@ RandomScene anyScene(std::mt19937& random, int scene) {
   const Size size = randomSize(random, scene);
   RandomSand sand = random() % 2 == 0 ? randomSand(random, size.columns, size.rows)
                                       : heldSand(random, size.columns, size.rows, uniform(random, 0.0, 20.0));
-  if (random() % 2 == 0)
-    sand.parameters.gravity = {uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0), -9.81};
+  if (random() % 2 == 0) sand.parameters.gravity = randomGravity(random, 3.0);
   return randomScene(random, std::move(sand), static_cast<int>(random() % 3),
                      random() % 3 == 0 ? 1 + static_cast<int>(random() % 2) : 0);
 }
@@ -68,11 +60,7 @@ std::vector<Variant> variantsOf(const SimulatorParameters& parameters) {
 }
 
 void expectSame(const Simulator& one, const Simulator& other) {
-  const Fields a = one.fields();
-  const Fields b = other.fields();
-  EXPECT_TRUE(sameBits(a.depth, b.depth));
-  EXPECT_TRUE(sameBits(a.momentum_x, b.momentum_x));
-  EXPECT_TRUE(sameBits(a.momentum_y, b.momentum_y));
+  expectSameBits(one.fields(), other.fields());
   EXPECT_EQ(one.time(), other.time());
   EXPECT_EQ(one.progress().steps, other.progress().steps);
   EXPECT_EQ(one.progress().repeated_steps, other.progress().repeated_steps);

@@ -141,7 +141,7 @@ TEST(StepLaws, MirroredAndTransposedScenesGiveTheSameBits) {
     for (int scene = 0; scene < kScenes; ++scene) {
       RandomSand sand = randomSand(random, randomCount(random), randomCount(random));
       sand.parameters.edges = randomEdges(random);
-      sand.parameters.gravity = {uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0), -9.81};
+      sand.parameters.gravity = randomGravity(random, 3.0);
       const Grid grid = sand.parameters.grid.grid();
       const Fields original = runSteps(sand, 20);
       const Fields other = runSteps(transformed(sand, symmetry), 20);

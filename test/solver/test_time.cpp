@@ -13,7 +13,11 @@ constexpr int kScenes = 30;
 
 RandomScene movingScene(std::mt19937& random, int pours) {
   const int columns = 1 + static_cast<int>(random() % 60);
-  return randomScene(random, randomSand(random, columns, 1 + static_cast<int>(random() % 60)), pours, 0);
+  RandomScene scene =
+      randomScene(random, randomSand(random, columns, 1 + static_cast<int>(random() % 60)), pours, 0);
+  // A map that is drained dry knows no bound: a share of it would be a frame of months.
+  for (Pour& pour : scene.pours) pour.rate = std::abs(pour.rate);
+  return scene;
 }
 
 /// Longest step that Eq. 14 and 34 allow from the present state. [s]
