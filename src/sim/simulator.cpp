@@ -243,14 +243,32 @@ class Simulator::Implementation {
     bodies_.push_back({name, std::move(field), Motion()});
   }
 
+  void placeBody(std::size_t body, const Eigen::Isometry3d& pose) {
+    Motion motion;
+    appendTo(motion, bodies_.at(body).name, time_, pose);
+    bodies_.at(body).motion = motion;
+    placed_anew_ = true;
+  }
+
+  void removeBody(std::size_t body) {
+    bodies_.at(body).motion = Motion();
+    bodies_.at(body).field.reset();
+    engine_->removeBody(body);
+    placed_anew_ = true;
+  }
+
+  static void appendTo(Motion& motion, const std::string& body, double time, const Eigen::Isometry3d& pose) {
+    try {
+      motion.append(time, pose);
+    } catch (const InvalidParameter& problem) {
+      throw InvalidParameter("body " + body, problem.what(), "a valid pose");
+    }
+  }
+
   void appendPose(std::size_t body, double time, const Eigen::Isometry3d& pose) {
     Body& moved = bodies_.at(body);
     placed_anew_ = placed_anew_ || moved.motion.empty();
-    try {
-      moved.motion.append(time, pose);
-    } catch (const InvalidParameter& problem) {
-      throw InvalidParameter("body " + moved.name, problem.what(), "a valid pose");
-    }
+    appendTo(moved.motion, moved.name, time, pose);
     moved.motion.forgetBefore(time_);
   }
 
@@ -418,6 +436,10 @@ std::size_t Simulator::addBody(const std::string& name, std::shared_ptr<const Di
 void Simulator::appendPose(std::size_t body, double time, const Eigen::Isometry3d& pose) {
   implementation_->appendPose(body, time, pose);
 }
+void Simulator::placeBody(std::size_t body, const Eigen::Isometry3d& pose) {
+  implementation_->placeBody(body, pose);
+}
+void Simulator::removeBody(std::size_t body) { implementation_->removeBody(body); }
 void Simulator::addPour(const Pour& pour) { implementation_->addPour(pour); }
 double Simulator::edit(const Edit& edit) { return implementation_->edit(edit); }
 Snapshot Simulator::snapshot() const { return implementation_->snapshot(); }

@@ -26,7 +26,10 @@ class Engine {
  public:
   virtual ~Engine() = default;
 
+  /// Bodies are numbered from 0.
   virtual void addBody(const DistanceField& field) = 0;
+  /// Frees what a body took; it is not cast again, and its number not used again.
+  virtual void removeBody(std::size_t body) = 0;
   /// Prepares a pour; pours are numbered from 0.
   virtual void addPour(const LocalRegion& region) = 0;
 

@@ -58,6 +58,8 @@ class EngineOn : public Engine {
     if (contacts_.empty()) contacts_.emplace_back(grid_.cells());
   }
 
+  void removeBody(std::size_t body) override { distance_fields_[body] = Memory<float>(0); }
+
   void addPour(const LocalRegion& region) override {
     PourOnBackend pour{changeOf(region), 0, Memory<double>(0)};
     const Window& window = pour.change.window;

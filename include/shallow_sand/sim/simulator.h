@@ -101,6 +101,11 @@ class Simulator {
   /// Tells where a body is at a time [s, of this simulator]; see Motion. @throws InvalidParameter naming the
   /// body
   void appendPose(std::size_t body, double time, const Eigen::Isometry3d& pose);
+  /// From now on the body rests at `pose`, wherever it was: sand is moved out of its way, and gets no speed
+  /// from the jump. What was appended before is forgotten. @throws InvalidParameter naming the body
+  void placeBody(std::size_t body, const Eigen::Isometry3d& pose);
+  /// Takes a body away: sand that it held up falls. Its number is not used again.
+  void removeBody(std::size_t body);
   /// @throws InvalidParameter
   void addPour(const Pour& pour);
 
