@@ -25,8 +25,8 @@ sensor_msgs::PointCloud2 toPointCloud(const Grid& grid, const Fields& fields, co
       const std::size_t k = grid.index(i, j);
       value[0] = static_cast<float>(grid.x(i));
       value[1] = static_cast<float>(grid.y(j));
-      value[2] = fields.bed[k] + fields.depth[k];
-      value[3] = fields.depth[k];
+      value[2] = fields.surface(k);
+      value[3] = fields.allDepth(k);
     }
   }
   return cloud;

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "gdal_support.h"
-#include "shallow_sand/device/window_part.h"
 #include "shallow_sand/scene/scene.h"
 #include "state_metadata.h"
 
@@ -20,13 +19,32 @@ auto fieldBands(State& state) {
   return std::array<std::pair<const char*, decltype(&f.bed)>, 4>{
       {{"bed", &f.bed}, {"depth", &f.depth}, {"momentum_x", &f.momentum_x}, {"momentum_y", &f.momentum_y}}};
 }
+/// Those that are there only where there are bodies.
+template <class State>
+auto loadBands(State& state) {
+  auto& f = state.fields;
+  return std::array<std::pair<const char*, decltype(&f.load)>, 4>{{{"load", &f.load},
+                                                                   {"load_elevation", &f.load_elevation},
+                                                                   {"load_momentum_x", &f.load_momentum_x},
+                                                                   {"load_momentum_y", &f.load_momentum_y}}};
+}
 template <class State>
 auto contactBands(State& state) {
   auto& c = state.contacts;
-  return std::array<std::pair<const char*, decltype(&c.ceiling)>, 4>{{{"contact_ceiling", &c.ceiling},
-                                                                      {"contact_length", &c.length},
-                                                                      {"contact_velocity_x", &c.velocity_x},
-                                                                      {"contact_velocity_y", &c.velocity_y}}};
+  return std::array<std::pair<const char*, decltype(&c.closed)>, 7>{{{"contact_clearance", &c.clearance},
+                                                                     {"contact_headroom", &c.headroom},
+                                                                     {"contact_closed", &c.closed},
+                                                                     {"contact_length", &c.length},
+                                                                     {"contact_velocity_x", &c.velocity_x},
+                                                                     {"contact_velocity_y", &c.velocity_y},
+                                                                     {"contact_velocity_z", &c.velocity_z}}};
+}
+
+bool hasBand(GDALDataset& dataset, const std::string& name) {
+  for (int number = 1; number <= dataset.GetRasterCount(); ++number) {
+    if (dataset.GetRasterBand(number)->GetDescription() == name) return true;
+  }
+  return false;
 }
 
 DatasetPointer createTiff(const std::string& path, const Grid& grid, int bands) {
@@ -75,17 +93,15 @@ Snapshot readState(GDALDataset& dataset, const SimulatorParameters& parameters, 
   if (dataset.GetRasterXSize() != grid.columns || dataset.GetRasterYSize() != grid.rows)
     throw InvalidParameter("size", "not that of its metadata", "an image of the grid's size");
   Snapshot state = snapshotOf(metadata, grid);
-  for (const auto& band : fieldBands(state)) {
-    band.second->resize(grid.cells());
-    transferNorthUp(bandNamed(dataset, band.first), GF_Read, band.second->data(), grid, path);
-  }
-  const Window& window = state.contacts.window;
-  if (window.empty()) return state;
-  std::vector<float> values(grid.cells());
-  for (const auto& band : contactBands(state)) {
-    transferNorthUp(bandNamed(dataset, band.first), GF_Read, values.data(), grid, path);
-    *band.second = partOf(values, window, grid);
-  }
+  const auto read = [&](const auto& bands) {
+    for (const auto& band : bands) {
+      band.second->resize(grid.cells());
+      transferNorthUp(bandNamed(dataset, band.first), GF_Read, band.second->data(), grid, path);
+    }
+  };
+  read(fieldBands(state));
+  if (hasBand(dataset, "load")) read(loadBands(state));
+  if (!state.contacts.windows.empty()) read(contactBands(state));
   return state;
 }
 
@@ -95,21 +111,19 @@ void saveState(const std::string& path, const SimulatorParameters& parameters, c
   const Grid grid = parameters.grid.grid();
   const QuietGdal quiet;
   requireSizes(path, grid, state);
-  const Window& window = state.contacts.window;
-  DatasetPointer dataset = createTiff(path, grid, window.empty() ? 4 : 8);
+  const bool with_loads = !state.fields.load.empty();
+  const bool with_contacts = !state.contacts.windows.empty();
+  DatasetPointer dataset = createTiff(path, grid, 4 + (with_loads ? 4 : 0) + (with_contacts ? 7 : 0));
   int number = 0;
-  const auto write = [&](const char* name, const std::vector<float>& values) {
-    dataset->GetRasterBand(++number)->SetDescription(name);
-    writeNorthUp(*dataset->GetRasterBand(number), values, grid, path);
-  };
-  for (const auto& band : fieldBands(state)) write(band.first, *band.second);
-  if (!window.empty()) {
-    std::vector<float> values(grid.cells(), 0.0f);
-    for (const auto& band : contactBands(state)) {
-      putPart(*band.second, window, grid, values);
-      write(band.first, values);
+  const auto write = [&](const auto& bands) {
+    for (const auto& band : bands) {
+      dataset->GetRasterBand(++number)->SetDescription(band.first);
+      writeNorthUp(*dataset->GetRasterBand(number), *band.second, grid, path);
     }
-  }
+  };
+  write(fieldBands(state));
+  if (with_loads) write(loadBands(state));
+  if (with_contacts) write(contactBands(state));
   for (const auto& item : stateMetadata(parameters, state)) {
     requireGdal(dataset->SetMetadataItem(item.first.c_str(), item.second.c_str(), kDomain) == CE_None, path);
   }

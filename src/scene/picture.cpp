@@ -67,13 +67,16 @@ Relief makeRelief(const Grid& grid, const Fields& fields, const std::string& pat
   const int width = std::max(1, static_cast<int>(std::lround(grid.columns * scale)));
   const int height = std::max(1, static_cast<int>(std::lround(grid.rows * scale)));
   std::vector<float> surface(grid.cells());
-  std::transform(fields.bed.begin(), fields.bed.end(), fields.depth.begin(), surface.begin(),
-                 std::plus<float>());
+  std::vector<float> depth(grid.cells());
+  for (std::size_t k = 0; k < grid.cells(); ++k) {
+    surface[k] = fields.surface(k);
+    depth[k] = fields.allDepth(k);
+  }
 
   Relief relief;
   relief.pixel = static_cast<double>(grid.spacing) / scale;
   relief.surface = resample(grid, surface, width, height, GRIORA_CubicSpline, path);
-  relief.depth = resample(grid, fields.depth, width, height, GRIORA_CubicSpline, path);
+  relief.depth = resample(grid, depth, width, height, GRIORA_CubicSpline, path);
   relief.shade = hillshade(relief.surface, relief.pixel, exaggerationFor(relief.surface, relief.pixel), path);
   const Raster coarse =
       resample(relief.surface, std::max(1, width / kBlur), std::max(1, height / kBlur), GRIORA_Average, path);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <sstream>
 #include <stdexcept>
 
 namespace shallow_sand {
@@ -54,11 +55,12 @@ void describe(const Snapshot& snapshot, Metadata& metadata) {
   metadata["ledger.left"] = exact(snapshot.ledger.left);
   metadata["ledger.now"] = exact(snapshot.ledger.now);
   metadata["bodies_cleared"] = snapshot.bodies_cleared ? "1" : "0";
-  const Window& window = snapshot.contacts.window;
-  metadata["contacts.column_begin"] = std::to_string(window.column_begin);
-  metadata["contacts.row_begin"] = std::to_string(window.row_begin);
-  metadata["contacts.column_end"] = std::to_string(window.column_end);
-  metadata["contacts.row_end"] = std::to_string(window.row_end);
+  std::ostringstream windows;
+  for (const Window& window : snapshot.contacts.windows) {
+    windows << window.column_begin << " " << window.row_begin << " " << window.column_end << " "
+            << window.row_end << " ";
+  }
+  metadata["contacts.windows"] = windows.str();
 }
 
 const std::string& textOf(const Metadata& metadata, const std::string& key) {
@@ -82,11 +84,19 @@ std::uint64_t countOf(const Metadata& metadata, const std::string& key) {
   return std::strtoull(textOf(metadata, key).c_str(), nullptr, 10);
 }
 
-int cellOf(const Metadata& metadata, const std::string& key, int most) {
-  const double number = numberOf(metadata, key);
-  if (!(number >= 0.0 && number <= most))
-    throw InvalidParameter(key, textOf(metadata, key), "a number from 0 to " + std::to_string(most));
-  return static_cast<int>(number);
+std::vector<Window> windowsOf(const Metadata& metadata, const std::string& key, const Grid& grid) {
+  std::vector<Window> windows;
+  std::istringstream text(textOf(metadata, key));
+  Window w;
+  while (text >> w.column_begin >> w.row_begin >> w.column_end >> w.row_end) {
+    const bool on_grid = w.column_begin >= 0 && w.row_begin >= 0 && !w.empty() &&
+                         w.column_end <= grid.columns && w.row_end <= grid.rows;
+    if (!on_grid) break;
+    windows.push_back(w);
+  }
+  if (!text.eof())
+    throw InvalidParameter(key, textOf(metadata, key), "columns and rows of rectangles on the grid");
+  return windows;
 }
 
 }  // namespace
@@ -122,10 +132,7 @@ Snapshot snapshotOf(const Metadata& metadata, const Grid& grid) {
   snapshot.ledger = {numberOf(metadata, "ledger.start"), numberOf(metadata, "ledger.poured"),
                      numberOf(metadata, "ledger.left"), numberOf(metadata, "ledger.now")};
   snapshot.bodies_cleared = numberOf(metadata, "bodies_cleared") != 0.0;
-  snapshot.contacts.window = {cellOf(metadata, "contacts.column_begin", grid.columns),
-                              cellOf(metadata, "contacts.row_begin", grid.rows),
-                              cellOf(metadata, "contacts.column_end", grid.columns),
-                              cellOf(metadata, "contacts.row_end", grid.rows)};
+  snapshot.contacts.windows = windowsOf(metadata, "contacts.windows", grid);
   return snapshot;
 }
 

@@ -140,6 +140,7 @@ class Simulator::Implementation {
     const std::vector<float> rest(grid_.cells(), 0.0f);
     start.fields = {std::move(bed), std::move(depth), rest, rest};
     start.material = localMaterial(parameters_.material, material, grid_);
+    start.displacement = parameters_.displacement;
     start.with_slopes = parameters_.solver.reconstruction == Reconstruction::minmod;
 #ifdef SHALLOW_SAND_WITH_CUDA
     if (chosen_.backend == Backend::cuda) engine_ = makeCudaEngine(start);
@@ -186,14 +187,21 @@ class Simulator::Implementation {
     snapshot.time = time_;
     snapshot.next_step = trial_;
     snapshot.progress = progress_;
-    snapshot.ledger = ledgerOf(snapshot.fields.depth);
+    snapshot.ledger = ledgerOf(snapshot.fields);
     return snapshot;
   }
 
   void restore(const Snapshot& snapshot) {
     requireFit(snapshot);
     Fields fields = snapshot.fields;
-    for (std::vector<float>* momentum : {&fields.momentum_x, &fields.momentum_y}) {
+    if (!bodies_.empty() && fields.load.empty()) {
+      // Saved when there was no body yet.
+      for (std::vector<float>* values :
+           {&fields.load, &fields.load_elevation, &fields.load_momentum_x, &fields.load_momentum_y})
+        values->assign(grid_.cells(), 0.0f);
+    }
+    for (std::vector<float>* momentum :
+         {&fields.momentum_x, &fields.momentum_y, &fields.load_momentum_x, &fields.load_momentum_y}) {
       // Negative zeros would be bits that a step changes.
       for (float& value : *momentum) value += 0.0f;
     }
@@ -217,24 +225,32 @@ class Simulator::Implementation {
       throw InvalidParameter("time", std::to_string(snapshot.time), "finite seconds");
     if (!(snapshot.next_step > 0.0))
       throw InvalidParameter("next_step", std::to_string(snapshot.next_step), "positive seconds");
-    requireFit(snapshot.contacts);
+    requireFit(snapshot.fields, snapshot.contacts);
   }
 
-  void requireFit(const ContactSnapshot& contacts) const {
-    const Window& window = contacts.window;
-    if (window.empty()) return;
-    if (bodies_.empty())
+  void requireFit(const Fields& fields, const ContactSnapshot& contacts) const {
+    if (bodies_.empty() && !(contacts.windows.empty() && fields.load.empty()))
       throw InvalidParameter("contacts", "those of bodies", "none, for there are no bodies");
-    if (window.united(Window::all(grid_)).columns() != grid_.columns ||
-        window.united(Window::all(grid_)).rows() != grid_.rows)
-      throw InvalidParameter("contacts", "a window that reaches beyond the grid", "one on the grid");
-    const std::size_t cells = window.cells();
-    for (const auto* values :
-         {&contacts.ceiling, &contacts.length, &contacts.velocity_x, &contacts.velocity_y}) {
+    const float any = -std::numeric_limits<float>::infinity();
+    if (!fields.load.empty()) {
+      checkField("load", fields.load, grid_, 0.0f);
+      checkField("load_elevation", fields.load_elevation, grid_, any);
+      checkField("load_momentum_x", fields.load_momentum_x, grid_, any);
+      checkField("load_momentum_y", fields.load_momentum_y, grid_, any);
+    }
+    if (contacts.windows.empty()) return;
+    const Window all = Window::all(grid_);
+    for (const Window& window : contacts.windows) {
+      if (window.united(all).cells() != all.cells())
+        throw InvalidParameter("contacts", "a window that reaches beyond the grid", "one on the grid");
+    }
+    for (const auto* values : {&contacts.clearance, &contacts.headroom, &contacts.closed, &contacts.length,
+                               &contacts.velocity_x, &contacts.velocity_y, &contacts.velocity_z}) {
       const bool valid =
-          values->size() == cells &&
+          values->size() == grid_.cells() &&
           std::none_of(values->begin(), values->end(), [](float value) { return std::isnan(value); });
-      if (!valid) throw InvalidParameter("contacts", "a bad list", std::to_string(cells) + " numbers");
+      if (!valid)
+        throw InvalidParameter("contacts", "a bad list", std::to_string(grid_.cells()) + " numbers");
     }
   }
 
@@ -243,16 +259,21 @@ class Simulator::Implementation {
     bodies_.push_back({name, std::move(field), Motion()});
   }
 
+  Body& present(std::size_t body) {
+    if (body < bodies_.size() && bodies_[body].field != nullptr) return bodies_[body];
+    throw InvalidParameter("body", std::to_string(body), "the number of a body that was not removed");
+  }
+
   void placeBody(std::size_t body, const Eigen::Isometry3d& pose) {
     Motion motion;
-    appendTo(motion, bodies_.at(body).name, time_, pose);
-    bodies_.at(body).motion = motion;
+    appendTo(motion, present(body).name, time_, pose);
+    present(body).motion = motion;
     placed_anew_ = true;
   }
 
   void removeBody(std::size_t body) {
-    bodies_.at(body).motion = Motion();
-    bodies_.at(body).field.reset();
+    present(body).motion = Motion();
+    present(body).field.reset();
     engine_->removeBody(body);
     placed_anew_ = true;
   }
@@ -266,7 +287,7 @@ class Simulator::Implementation {
   }
 
   void appendPose(std::size_t body, double time, const Eigen::Isometry3d& pose) {
-    Body& moved = bodies_.at(body);
+    Body& moved = present(body);
     placed_anew_ = placed_anew_ || moved.motion.empty();
     appendTo(moved.motion, moved.name, time, pose);
     moved.motion.forgetBefore(time_);
@@ -314,16 +335,10 @@ class Simulator::Implementation {
 
   /// Moves sand out of the bodies where they are now.
   void clearBodies() {
-    if (bodies_.empty()) return;
-    castRays();
-    engine_->displace();
+    if (!bodies_.empty()) engine_->moveBodies(placed());
   }
 
-  double bodyOverlap() {
-    if (bodies_.empty()) return 0.0;
-    castRays();
-    return engine_->bodyOverlap();
-  }
+  double bodyOverlap() { return bodies_.empty() ? 0.0 : engine_->overlap(placed()); }
 
   /// Length of the next step; none is a sliver at the end, which roundings of the time would leave. [s]
   double stepWithin(double end) const {
@@ -347,14 +362,14 @@ class Simulator::Implementation {
     throw InvalidParameter("solver.fixed_step", std::to_string(*solver.fixed_step), expected.str());
   }
 
-  void castRays() {
+  std::vector<PlacedBody> placed() const {
     std::vector<PlacedBody> placed;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
       if (bodies_[k].motion.empty()) continue;
       PlacedBody body = place(k);
       if (!body.window.empty()) placed.push_back(body);
     }
-    engine_->castRays(placed);
+    return placed;
   }
 
   PlacedBody place(std::size_t number) const {
@@ -388,11 +403,11 @@ class Simulator::Implementation {
     return placed;
   }
 
-  Ledger ledger() const { return ledgerOf(engine_->fields().depth); }
+  Ledger ledger() const { return ledgerOf(engine_->fields()); }
 
-  Ledger ledgerOf(const std::vector<float>& depth) const {
+  Ledger ledgerOf(const Fields& fields) const {
     return {start_volume_, poured_before_ + engine_->poured(), left_before_ + engine_->left(),
-            sum(depth) * grid_.cellArea()};
+            (sum(fields.depth) + sum(fields.load)) * grid_.cellArea()};
   }
 
   /// Speeds are known only once a step has read them. A step is tried that is a little shorter than the bound
@@ -457,10 +472,15 @@ double Simulator::maxSpeed() const {
   const SandConstants sand = sandConstants(grid(), parameters().gravity, parameters().material);
   const Fields f = fields();
   double fastest = 0.0;
-  for (std::size_t k = 0; k < f.depth.size(); ++k) {
-    const double inverse = inverseDepth(f.depth[k], sand);
-    fastest = std::max(fastest, inverse * std::hypot(f.momentum_x[k], f.momentum_y[k]));
-  }
+  const auto look = [&](const std::vector<float>& depth, const std::vector<float>& momentum_x,
+                        const std::vector<float>& momentum_y) {
+    for (std::size_t k = 0; k < depth.size(); ++k) {
+      const double inverse = inverseDepth(depth[k], sand);
+      fastest = std::max(fastest, inverse * std::hypot(momentum_x[k], momentum_y[k]));
+    }
+  };
+  look(f.depth, f.momentum_x, f.momentum_y);
+  look(f.load, f.load_momentum_x, f.load_momentum_y);
   return fastest;
 }
 
@@ -468,7 +488,8 @@ std::size_t Simulator::activeCells() const {
   const Fields f = fields();
   std::size_t active = 0;
   for (std::size_t k = 0; k < f.depth.size(); ++k) {
-    active += f.momentum_x[k] != 0.0f || f.momentum_y[k] != 0.0f ? 1 : 0;
+    const bool load_moves = !f.load.empty() && (f.load_momentum_x[k] != 0.0f || f.load_momentum_y[k] != 0.0f);
+    active += load_moves || f.momentum_x[k] != 0.0f || f.momentum_y[k] != 0.0f ? 1 : 0;
   }
   return active;
 }

@@ -1,5 +1,7 @@
 #include "shallow_sand/solver/tiled_stepper.h"
 
+#include <algorithm>
+
 #include "shallow_sand/solver/row_walker.h"
 
 namespace shallow_sand {
@@ -42,7 +44,8 @@ TiledStepper::TiledStepper(const HostExecutor& executor, const Grid& grid, const
     scratch_.emplace_back(RowWalker<Step<true, true>>::scratchSize());
 }
 
-float TiledStepper::attempt(const StepArguments& arguments, const Window& bodies, const SandFieldsOut& out) {
+float TiledStepper::attempt(const StepArguments& arguments, const std::vector<Window>& bodies,
+                            const SandFieldsOut& out) {
   using Walker = RowWalker<Step<false, false>>;
   if (!options_.sleeping) tiles_.touch(Window::all(grid_));
   const std::vector<Window>& rectangles = tiles_.due(Walker::kWidest, Walker::kHighest);
@@ -54,7 +57,9 @@ float TiledStepper::attempt(const StepArguments& arguments, const Window& bodies
   }
   executor_.forEachTask(static_cast<int>(rectangles.size()), [&](int task, int thread) {
     const Window& cells = rectangles[task];
-    const bool with_bodies = !cells.grown(Tiles::kReach, grid_).overlap(bodies).empty();
+    const Window reached = cells.grown(Tiles::kReach, grid_);
+    const bool with_bodies = std::any_of(
+        bodies.begin(), bodies.end(), [&](const Window& window) { return !reached.overlap(window).empty(); });
     withStep(arguments, with_bodies, options_.with_slopes, [&](const auto& step) {
       RowWalker<std::decay_t<decltype(step)>> walker(step, out, cells, tiles_, scratch_[thread].data());
       walk(walker, options_.instructions);

@@ -35,13 +35,13 @@ Surface surfaceOf(const Grid& grid, const Fields& fields) {
     for (int i = 0; i < grid.columns; ++i) {
       const std::size_t k = grid.index(i, j);
       surface.points[k] =
-          Eigen::Vector3d(grid.x(i), grid.y(j), fields.bed[k] + fields.depth[k]).cast<float>();
+          Eigen::Vector3d(grid.x(i), grid.y(j), fields.surface(k)).cast<float>();
     }
   }
   for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i) {
       const std::size_t k = grid.index(i, j);
-      const Eigen::Vector3f& material = fields.depth[k] < 0.1f * grid.spacing ? kBareBed : kSand;
+      const Eigen::Vector3f& material = fields.allDepth(k) < 0.1f * grid.spacing ? kBareBed : kSand;
       surface.colors[k] = (relief(surface, grid, i, j) * material).cwiseMin(1.0f);
     }
   }

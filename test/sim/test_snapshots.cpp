@@ -84,7 +84,7 @@ TEST(Snapshots, ThatDoNotFitAreRefusedAndChangeNothing) {
   refused([](Snapshot& s) { s.fields.momentum_y[5] = std::nanf(""); });
   refused([](Snapshot& s) { s.time = std::nan(""); });
   refused([](Snapshot& s) { s.next_step = 0.0; });
-  refused([](Snapshot& s) { s.contacts.window = {0, 0, 2, 2}; });
+  refused([](Snapshot& s) { s.contacts.windows = {{0, 0, 2, 2}}; });
 }
 
 }  // namespace

@@ -1,15 +1,31 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace shallow_sand {
 
-/// The state of the sand, on the host; one float a cell, row-major, row 0 at the smallest y.
+/// The state of the sand, on the host; one float a cell, row-major, row 0 at the smallest y. Bed, depth and
+/// momentum are those of the ground.
 struct Fields {
   std::vector<float> bed;         ///< elevation b [m]
   std::vector<float> depth;       ///< h [m]
   std::vector<float> momentum_x;  ///< hu [m²/s]
   std::vector<float> momentum_y;  ///< hv [m²/s]
+
+  /// Sand that lies on bodies; these are empty as long as there are none.
+  std::vector<float> load{};             ///< its depth [m]
+  std::vector<float> load_elevation{};   ///< what it lies on; 0 where there is no body [m]
+  std::vector<float> load_momentum_x{};  ///< [m²/s]
+  std::vector<float> load_momentum_y{};
+
+  /// Where the sand that one sees from above ends. [m]
+  float surface(std::size_t cell) const {
+    return hasLoad(cell) ? load_elevation[cell] + load[cell] : bed[cell] + depth[cell];
+  }
+  /// Depth of all sand of a cell. [m]
+  float allDepth(std::size_t cell) const { return hasLoad(cell) ? depth[cell] + load[cell] : depth[cell]; }
+  bool hasLoad(std::size_t cell) const { return !load.empty() && load[cell] > 0.0f; }
 };
 
 /// Material that varies over the map: each list is empty (then Material holds everywhere) or has one value a

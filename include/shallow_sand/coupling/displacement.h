@@ -1,8 +1,7 @@
 #pragma once
 
-#include "shallow_sand/coupling/rays.h"
+#include "shallow_sand/coupling/contact.h"
 #include "shallow_sand/device/window.h"
-#include "shallow_sand/solver/equations.h"
 
 namespace shallow_sand {
 
@@ -11,8 +10,8 @@ namespace shallow_sand {
 /// none: sand that a blade pushes would else end behind its edge. Calls (0, k): k counts columns of the
 /// window.
 struct DistanceAlongColumns {
-  ContactFields contact;
-  const float* depth;
+  const float* clearance;
+  const float* ground;  ///< depth of the sand under it [m]
   int* distance;
   int columns;
   float spacing;
@@ -26,7 +25,7 @@ struct DistanceAlongColumns {
     int nearest = kFar;
     for (int j = window.row_begin; j < window.row_end; ++j) {
       const long long at = static_cast<long long>(j) * columns + i;
-      nearest = contact.ceiling[at] - depth[at] >= spacing ? 0 : (nearest < kFar ? nearest + 1 : kFar);
+      nearest = clearance[at] - ground[at] >= spacing ? 0 : (nearest < kFar ? nearest + 1 : kFar);
       distance[at] = nearest;
     }
     nearest = kFar;
@@ -55,86 +54,133 @@ struct DistanceAlongRows {
   }
 };
 
-/// Sand that lies where a body is goes to those neighbours that are nearer to the body's edge, with the
-/// velocity that Eq. 20 gives it; the vertical motion of the body pushes the sand of its neighbours (Eq. 24).
-/// Written as a gather, so the order of cells does not matter and no sand is lost.
+/// What the sand of a column may do when bodies have come: each of the two layers keeps what there is room
+/// for, and hands the rest to neighbours.
+struct Outflow {
+  float excess;   ///< depth that must go [m]
+  float share;    ///< of it, to each neighbour that takes some [m]
+  Momentum with;  ///< momentum that goes with a share [m²/s]
+  bool to_west;
+  bool to_east;
+  bool to_south;
+  bool to_north;
+
+  SHALLOW_SAND_HOST_DEVICE int takers() const { return to_west + to_east + to_south + to_north; }
+
+  /// A moving body pushes ahead and aside: sand goes behind it only if it can go nowhere else. Without this a
+  /// blade one cell thick would let half of its sand through.
+  SHALLOW_SAND_HOST_DEVICE void keepAhead(float velocity_x, float velocity_y) {
+    const bool west = to_west && !(velocity_x > 0.0f);
+    const bool east = to_east && !(velocity_x < 0.0f);
+    const bool south = to_south && !(velocity_y > 0.0f);
+    const bool north = to_north && !(velocity_y < 0.0f);
+    if (!(west || east || south || north)) return;
+    to_west = west;
+    to_east = east;
+    to_south = south;
+    to_north = north;
+  }
+};
+
+/// Sand that has no room goes to neighbours: the ground's to those that are nearer to the body's edge, a load
+/// to those whose support is lower. It takes the velocity along that Eq. 20 gives it; the vertical motion of
+/// the body pushes the sand of its neighbours (Eq. 24). Written as a gather, so the order of cells does not
+/// matter and no sand is lost. Decides which columns are closed.
 struct DisplaceSand {
   ContactFields contact;
   const int* distance;
-  const float* depth_in;
-  const float* momentum_x_in;
-  const float* momentum_y_in;
-  float* depth;
-  float* momentum_x;
-  float* momentum_y;
-  int columns;
+  SandLayer ground;  ///< as MeetBodies left it
+  SandLayer load;
+  const float* bed;
+  SandColumns columns;  ///< is written
+  int across;           ///< cells in a row
   float spacing;
-  Window window;  ///< of the distances; its outermost cells are clear of bodies or at the edge of the grid
-
-  struct Column {
-    float excess;      ///< depth of the sand that must go [m]
-    float share;       ///< of it, to each neighbour that takes some [m]
-    Momentum carried;  ///< momentum that goes with a share
-    bool to_west;
-    bool to_east;
-    bool to_south;
-    bool to_north;
-  };
+  Window window;  ///< its outermost cells are clear of bodies or at the edge of the grid
 
   SHALLOW_SAND_HOST_DEVICE bool inside(int i, int j) const {
     return i >= window.column_begin && i < window.column_end && j >= window.row_begin && j < window.row_end;
   }
   SHALLOW_SAND_HOST_DEVICE long long index(int i, int j) const {
-    return static_cast<long long>(j) * columns + i;
+    return static_cast<long long>(j) * across + i;
   }
   SHALLOW_SAND_HOST_DEVICE bool nearer(int i, int j, int than) const {
     return inside(i, j) && distance[index(i, j)] < than;
   }
-
-  SHALLOW_SAND_HOST_DEVICE Column column(int i, int j) const {
-    Column c{0.0f, 0.0f, {0.0f, 0.0f}, false, false, false, false};
-    if (!inside(i, j)) return c;
+  SHALLOW_SAND_HOST_DEVICE bool lower(int i, int j, float than) const {
+    if (!inside(i, j)) return false;
     const long long at = index(i, j);
-    const float h = depth_in[at];
-    const float excess = h - contact.ceiling[at];
-    if (!(excess > 0.0f)) return c;
-    const int own = distance[at];
-    c.to_west = nearer(i - 1, j, own);
-    c.to_east = nearer(i + 1, j, own);
-    c.to_south = nearer(i, j - 1, own);
-    c.to_north = nearer(i, j + 1, own);
-    keepAhead(c, contact.velocity_x[at], contact.velocity_y[at]);
-    const int takers = c.to_west + c.to_east + c.to_south + c.to_north;
-    if (takers == 0) return c;
-    c.excess = excess;
-    c.share = excess / static_cast<float>(takers);
-    // Eq. 20 for the part that goes: Ω_s moves with the body, the sand above it as before.
-    const float solid = minimum(contact.length[at], excess) / static_cast<float>(takers);
-    const float loose = (c.share - solid) / h;
-    c.carried.x = solid * contact.velocity_x[at] + loose * momentum_x_in[at];
-    c.carried.y = solid * contact.velocity_y[at] + loose * momentum_y_in[at];
-    return c;
+    return (contact.isCovered(at) ? contact.top[at] : bed[at] + ground.depth[at]) < than;
   }
 
-  /// A moving body pushes ahead and aside: sand goes behind it only if it can go nowhere else. Without this a
-  /// blade one cell thick would let half of its sand through.
-  SHALLOW_SAND_HOST_DEVICE static void keepAhead(Column& c, float velocity_x, float velocity_y) {
-    const bool west = c.to_west && !(velocity_x > 0.0f);
-    const bool east = c.to_east && !(velocity_x < 0.0f);
-    const bool south = c.to_south && !(velocity_y > 0.0f);
-    const bool north = c.to_north && !(velocity_y < 0.0f);
-    if (!(west || east || south || north)) return;
-    c.to_west = west;
-    c.to_east = east;
-    c.to_south = south;
-    c.to_north = north;
+  SHALLOW_SAND_HOST_DEVICE Outflow ofGround(int i, int j) const {
+    Outflow out{};
+    if (!inside(i, j)) return out;
+    const long long at = index(i, j);
+    const float h = ground.depth[at];
+    const float excess = h - contact.clearance[at];
+    if (!(excess > 0.0f)) return out;
+    const int own = distance[at];
+    out.to_west = nearer(i - 1, j, own);
+    out.to_east = nearer(i + 1, j, own);
+    out.to_south = nearer(i, j - 1, own);
+    out.to_north = nearer(i, j + 1, own);
+    out.keepAhead(contact.velocity_x[at], contact.velocity_y[at]);
+    const int takers = out.takers();
+    if (takers == 0) return out;
+    out.excess = excess;
+    out.share = excess / static_cast<float>(takers);
+    // Eq. 20 for the part that goes: Ω_s moves with the body, the sand above it as before.
+    const float solid = minimum(contact.length[at], excess) / static_cast<float>(takers);
+    const float loose = (out.share - solid) / h;
+    out.with.x = solid * contact.velocity_x[at] + loose * ground.momentum_x[at];
+    out.with.y = solid * contact.velocity_y[at] + loose * ground.momentum_y[at];
+    return out;
+  }
+
+  SHALLOW_SAND_HOST_DEVICE Outflow ofLoad(int i, int j) const {
+    Outflow out{};
+    if (!inside(i, j)) return out;
+    const long long at = index(i, j);
+    const float excess = load.depth[at] - (contact.swept[at] != 0 ? 0.0f : contact.headroom[at]);
+    if (!contact.isCovered(at) || !(excess > 0.0f)) return out;
+    const float own = contact.top[at];
+    out.to_west = lower(i - 1, j, own);
+    out.to_east = lower(i + 1, j, own);
+    out.to_south = lower(i, j - 1, own);
+    out.to_north = lower(i, j + 1, own);
+    out.keepAhead(contact.velocity_x[at], contact.velocity_y[at]);
+    const int takers = out.takers();
+    if (takers == 0) return out;
+    out.excess = excess;
+    out.share = excess / static_cast<float>(takers);
+    out.with = {out.share * contact.velocity_x[at], out.share * contact.velocity_y[at]};
+    return out;
+  }
+
+  /// What flows in from the four neighbours.
+  SHALLOW_SAND_HOST_DEVICE static Sand gathered(const Outflow& west, const Outflow& east,
+                                                const Outflow& south, const Outflow& north) {
+    const float w = west.to_east ? 1.0f : 0.0f;
+    const float e = east.to_west ? 1.0f : 0.0f;
+    const float s = south.to_north ? 1.0f : 0.0f;
+    const float n = north.to_south ? 1.0f : 0.0f;
+    return {(w * west.share + e * east.share) + (s * south.share + n * north.share),
+            (w * west.with.x + e * east.with.x) + (s * south.with.x + n * north.with.x),
+            (w * west.with.y + e * east.with.y) + (s * south.with.y + n * north.with.y)};
+  }
+
+  /// Part of a column's sand that stays. One that gives its excess away is exactly full; a difference could
+  /// be off by a rounding.
+  SHALLOW_SAND_HOST_DEVICE static Sand kept(const Sand& sand, const Outflow& out, float room) {
+    if (!(out.excess > 0.0f)) return sand;
+    return {room, 0.0f, 0.0f};
   }
 
   /// w̃ of Eq. 20. [m/s]
   SHALLOW_SAND_HOST_DEVICE float verticalVelocity(int i, int j) const {
     if (!inside(i, j)) return 0.0f;
     const long long at = index(i, j);
-    const float h = depth_in[at];
+    const float h = ground.depth[at];
     return contact.length[at] > 0.0f && h > 0.0f ? contact.length[at] * contact.velocity_z[at] / h : 0.0f;
   }
 
@@ -149,33 +195,58 @@ struct DisplaceSand {
 
   SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {
     const long long at = index(i, j);
-    const Column own = column(i, j);
-    const Column west = column(i - 1, j);
-    const Column east = column(i + 1, j);
-    const Column south = column(i, j - 1);
-    const Column north = column(i, j + 1);
-    const float from_west = west.to_east ? west.share : 0.0f;
-    const float from_east = east.to_west ? east.share : 0.0f;
-    const float from_south = south.to_north ? south.share : 0.0f;
-    const float from_north = north.to_south ? north.share : 0.0f;
-    // A column that gave its excess away is exactly full; a difference could be off by a rounding.
-    const float kept = own.excess > 0.0f ? contact.ceiling[at] : depth_in[at];
-    const float h = kept + ((from_west + from_east) + (from_south + from_north));
-    float hu = own.excess > 0.0f ? 0.0f : momentum_x_in[at];
-    float hv = own.excess > 0.0f ? 0.0f : momentum_y_in[at];
-    hu += ((west.to_east ? west.carried.x : 0.0f) + (east.to_west ? east.carried.x : 0.0f)) +
-          ((south.to_north ? south.carried.x : 0.0f) + (north.to_south ? north.carried.x : 0.0f));
-    hv += ((west.to_east ? west.carried.y : 0.0f) + (east.to_west ? east.carried.y : 0.0f)) +
-          ((south.to_north ? south.carried.y : 0.0f) + (north.to_south ? north.carried.y : 0.0f));
-    if (h > 0.0f && !isFull(h, contact.ceiling[at], spacing)) {
+    const Outflow ground_out = ofGround(i, j);
+    const Outflow load_out = ofLoad(i, j);
+    Sand below = kept(ground.get(at), ground_out, contact.clearance[at]);
+    Sand above = kept(load.get(at), load_out, contact.swept[at] != 0 ? 0.0f : contact.headroom[at]);
+    add(below, gathered(ofGround(i - 1, j), ofGround(i + 1, j), ofGround(i, j - 1), ofGround(i, j + 1)));
+    const bool covered = contact.isCovered(at);
+    add(covered ? above : below,
+        gathered(ofLoad(i - 1, j), ofLoad(i + 1, j), ofLoad(i, j - 1), ofLoad(i, j + 1)));
+    const bool closed = covered && isFull(below.h, contact.clearance[at], spacing);
+    if (below.h > 0.0f && !closed) {
       // As Eq. 23 has it, hu takes the difference along x only, hv the one along y only.
-      hu = pushed(hu, h, verticalVelocity(i + 1, j) - verticalVelocity(i - 1, j));
-      hv = pushed(hv, h, verticalVelocity(i, j + 1) - verticalVelocity(i, j - 1));
+      below.hu = pushed(below.hu, below.h, verticalVelocity(i + 1, j) - verticalVelocity(i - 1, j));
+      below.hv = pushed(below.hv, below.h, verticalVelocity(i, j + 1) - verticalVelocity(i, j - 1));
     }
-    depth[at] = h;
-    // Adding 0 leaves no negative zeros, which would be bits that a step changes.
-    momentum_x[at] = hu + 0.0f;
-    momentum_y[at] = hv + 0.0f;
+    if (closed) below = {below.h, 0.0f, 0.0f};
+    columns.closed[at] = closed ? 1 : 0;
+    columns.visible.set(at, closed ? above : below);
+    columns.hidden.set(at, closed ? below : above);
+    columns.visible_bed[at] = closed ? contact.top[at] : bed[at];
+    columns.ceiling[at] = closed ? contact.headroom[at] : contact.clearance[at];
+  }
+
+ private:
+  SHALLOW_SAND_HOST_DEVICE static void add(Sand& sand, const Sand& more) {
+    sand = {sand.h + more.h, sand.hu + more.hu, sand.hv + more.hv};
+  }
+};
+
+/// Largest speed that bodies in the sand, and sand that hangs on bodies, ask a step to follow. [m/s]
+struct ContactSpeed {
+  ContactFields contact;
+  SandColumns columns;
+  const float* layer_fraction;  ///< null where the material is the same everywhere
+  const float* layer_depth;
+  SandConstants sand;
+  int across;
+
+  SHALLOW_SAND_HOST_DEVICE float operator()(int i, int j) const {
+    const long long at = static_cast<long long>(j) * across + i;
+    if (!contact.isCovered(at)) return 0.0f;
+    const Sand load = columns.load(at);
+    float speed = 0.0f;
+    if (contact.length[at] > 0.0f || load.h > 0.0f) {
+      speed = maximum(maximum(fabsf(contact.velocity_x[at]), fabsf(contact.velocity_y[at])),
+                      fabsf(contact.velocity_z[at]));
+    }
+    if (columns.closed[at] != 0 || !(load.h > 0.0f)) return speed;
+    const LocalMaterial material =
+        layer_depth == nullptr ? sand.uniform : LocalMaterial{0.0f, layer_fraction[at], layer_depth[at]};
+    const float inverse = inverseDepth(load.h, sand);
+    const float flow = inverse * maximum(fabsf(load.hu), fabsf(load.hv));
+    return maximum(speed, flow + waveSpeed(diluteLayer(load.h, material), sand));
   }
 };
 

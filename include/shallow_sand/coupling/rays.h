@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "shallow_sand/coupling/body_view.h"
+#include "shallow_sand/coupling/body_bins.h"
 
 namespace shallow_sand {
 
@@ -11,20 +11,42 @@ namespace shallow_sand {
 struct SolidInterval {
   float bottom;
   float top;
+  int body;
 };
 
-/// Marches up a vertical ray through one body, from `from` to `to`, and reports the lowest solid interval
-/// between them and the length of all solid intervals below `surface` (section 5, steps 1–3: the body's
-/// signed distance field is sampled along the ray; where its sign changes, the crossing is found by linear
-/// interpolation). [m] `lowest` is left alone if the ray meets nothing.
-SHALLOW_SAND_HOST_DEVICE inline float castRay(const BodyView& body, float x, float y, float from, float to,
-                                              float surface, SolidInterval& lowest, bool& found) {
+/// The solid parts of a ray, by their undersides; they may overlap. Of more than there is room for, the
+/// highest ones are one.
+struct SolidIntervals {
+  static constexpr int kMost = 8;
+  SolidInterval at[kMost];
+  int count = 0;
+
+  SHALLOW_SAND_HOST_DEVICE void insert(const SolidInterval& interval) {
+    SolidInterval carried = interval;
+    for (int k = 0; k < count; ++k) {
+      if (!(carried.bottom < at[k].bottom)) continue;
+      const SolidInterval higher = at[k];
+      at[k] = carried;
+      carried = higher;
+    }
+    if (count < kMost) {
+      at[count++] = carried;
+    } else {
+      at[kMost - 1].top = maximum(at[kMost - 1].top, carried.top);
+    }
+  }
+};
+
+/// Marches up a vertical ray through one body, from `from` to its highest point, and adds the solid intervals
+/// (section 5, steps 1–3: the body's signed distance field is sampled along the ray; where its sign changes,
+/// the crossing is found by linear interpolation). [m]
+SHALLOW_SAND_HOST_DEVICE inline void castRay(const BodyView& body, int number, float x, float y, float from,
+                                             SolidIntervals& solids) {
   const float shortest = body.field.spacing;
+  const float to = body.high.z;
   float z = from;
   float distance = body.field.sample(body.toBody({x, y, z}));
   float bottom = from;
-  float submerged = 0.0f;
-  found = false;
   while (z < to) {
     const float next_z = minimum(z + maximum(shortest, fabsf(distance)), to);
     const float next = body.field.sample(body.toBody({x, y, next_z}));
@@ -35,84 +57,58 @@ SHALLOW_SAND_HOST_DEVICE inline float castRay(const BodyView& body, float x, flo
       if (next_inside) {
         bottom = crossing;
       } else {
-        if (!found) lowest = {bottom, crossing};
-        found = true;
-        submerged += maximum(minimum(crossing, surface) - bottom, 0.0f);
+        solids.insert({bottom, crossing, number});
       }
     }
     z = next_z;
     distance = next;
   }
-  if (distance < 0.0f) {
-    if (!found) lowest = {bottom, to};
-    found = true;
-    submerged += maximum(minimum(to, surface) - bottom, 0.0f);
-  }
-  return submerged;
+  if (distance < 0.0f) solids.insert({bottom, to, number});
 }
 
-/// What the rays leave behind, one float a cell.
-struct ContactFields {
-  float* ceiling;     ///< depth of sand that fits under the lowest solid interval, infinite without one [m]
-  float* length;      ///< of that interval within the sand, Ω_s of Eq. 20 [m]
-  float* velocity_x;  ///< mean velocity V + ω × r of the body over that length [m/s]
-  float* velocity_y;
-  float* velocity_z;
-  float* overlap;  ///< of all solid intervals within the sand [m]
+/// The solid parts of the column of a cell, above a bed of elevation `b` [m].
+SHALLOW_SAND_HOST_DEVICE inline SolidIntervals solidsAt(const BodyBins& bins, int i, int j, float spacing,
+                                                        float b) {
+  const float x = (static_cast<float>(i) + 0.5f) * spacing;
+  const float y = (static_cast<float>(j) + 0.5f) * spacing;
+  SolidIntervals solids;
+  const int bin = bins.binOf(i, j);
+  for (int k = bins.first[bin]; k < bins.first[bin + 1]; ++k) {
+    const BodyView& body = bins.bodies[bins.members[k]];
+    const float from = maximum(b, body.low.z);
+    if (x < body.low.x || x > body.high.x || y < body.low.y || y > body.high.y || !(from < body.high.z))
+      continue;
+    castRay(body, bins.members[k], x, y, from, solids);
+  }
+  return solids;
+}
+
+/// The lowest solid of a column: the lowest interval and all that follow it closer than a cell. [m]
+struct LowestSolid {
+  float bottom = std::numeric_limits<float>::infinity();
+  float top = 0.0f;
+  float next = std::numeric_limits<float>::infinity();  ///< underside of the next solid
+  int lowest_body = -1;  ///< body of the underside; negative: there is no solid
+  int highest_body = -1;
 };
 
-/// Casts the ray of one column through all bodies. Bodies that hang clear above the sand are not seen.
-struct CastRays {
-  const BodyView* bodies;
-  int count;
-  const float* depth;
-  const float* bed;
-  ContactFields contact;
-  int columns;
-  float spacing;
-
-  SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {
-    const long long at = static_cast<long long>(j) * columns + i;
-    const float x = (static_cast<float>(i) + 0.5f) * spacing;
-    const float y = (static_cast<float>(j) + 0.5f) * spacing;
-    const float b = bed[at];
-    const float surface = b + depth[at];
-    SolidInterval lowest{std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()};
-    Vector3 velocity;
-    float overlap = 0.0f;
-    for (int k = 0; k < count; ++k) {
-      const BodyView& body = bodies[k];
-      const float from = maximum(b, body.low.z);
-      const float to = minimum(body.high.z, surface + spacing);
-      if (x < body.low.x || x > body.high.x || y < body.low.y || y > body.high.y || !(from < to)) continue;
-      SolidInterval interval{0.0f, 0.0f};
-      bool found = false;
-      overlap += castRay(body, x, y, from, to, surface, interval, found);
-      if (found && interval.bottom < lowest.bottom) {
-        lowest = interval;
-        // The velocity is linear along the ray: its mean over the interval is its value in the middle.
-        velocity = body.velocityAt({x, y, 0.5f * (interval.bottom + minimum(interval.top, surface))});
-      }
+SHALLOW_SAND_HOST_DEVICE inline LowestSolid lowestSolid(const SolidIntervals& solids, float spacing) {
+  LowestSolid solid;
+  if (solids.count == 0) return solid;
+  solid.bottom = solids.at[0].bottom;
+  solid.top = solids.at[0].top;
+  solid.lowest_body = solids.at[0].body;
+  solid.highest_body = solids.at[0].body;
+  for (int k = 1; k < solids.count; ++k) {
+    const SolidInterval& interval = solids.at[k];
+    if (interval.bottom - solid.top >= spacing) {
+      solid.next = interval.bottom;
+      break;
     }
-    contact.ceiling[at] = maximum(lowest.bottom - b, 0.0f);
-    contact.length[at] = maximum(minimum(lowest.top, surface) - lowest.bottom, 0.0f);
-    contact.velocity_x[at] = velocity.x;
-    contact.velocity_y[at] = velocity.y;
-    contact.velocity_z[at] = velocity.z;
-    contact.overlap[at] = minimum(overlap, depth[at]);
+    if (interval.top > solid.top) solid.highest_body = interval.body;
+    solid.top = maximum(solid.top, interval.top);
   }
-};
-
-/// Largest speed at which a body that is in the sand moves over the map. [m/s]
-struct ContactSpeed {
-  ContactFields contact;
-  int columns;
-
-  SHALLOW_SAND_HOST_DEVICE float operator()(int i, int j) const {
-    const long long at = static_cast<long long>(j) * columns + i;
-    const float speed = maximum(fabsf(contact.velocity_x[at]), fabsf(contact.velocity_y[at]));
-    return contact.length[at] > 0.0f ? speed : 0.0f;
-  }
-};
+  return solid;
+}
 
 }  // namespace shallow_sand

@@ -4,22 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "shallow_sand/coupling/body_view.h"
 #include "shallow_sand/device/instruction_set.h"
 #include "shallow_sand/device/window.h"
+#include "shallow_sand/sim/body_windows.h"
 #include "shallow_sand/sim/simulator.h"
 #include "shallow_sand/solver/change_sand.h"
 #include "shallow_sand/solver/sand_constants.h"
 #include "shallow_sand/solver/step.h"
 
 namespace shallow_sand {
-
-/// A body at one instant; `view.field.distance` is filled in by the engine.
-struct PlacedBody {
-  std::size_t body;
-  BodyView view;
-  Window window;  ///< columns it may touch
-};
 
 /// The fields on their backend, and the kernels of a step; it knows no time and no motion.
 class Engine {
@@ -33,14 +26,13 @@ class Engine {
   /// Prepares a pour; pours are numbered from 0.
   virtual void addPour(const LocalRegion& region) = 0;
 
-  /// Casts the rays of these bodies.
-  virtual void castRays(const std::vector<PlacedBody>& bodies) = 0;
-  /// Moves the sand that the last rays found inside bodies.
-  virtual void displace() = 0;
+  /// Bodies stand here now, and no others: the sand makes way.
+  virtual void moveBodies(const std::vector<PlacedBody>& bodies) = 0;
   /// Computes a step of dt [s]. Returns the largest speed that it had to follow (Eq. 14, 34), that of bodies
   /// in the sand included [m/s]: if dt was too long for it, attempt again.
   virtual float attempt(float dt) = 0;
-  /// The last attempt becomes the state. Returns how many cells it computed.
+  /// The last attempt becomes the state, and sand on bodies flows for as long. Returns how many cells the
+  /// attempt computed.
   virtual long long accept() = 0;
   /// Adds this volume [m³] through a pour; takes it away if it is negative, as far as there is some.
   virtual void pour(std::size_t number, double volume) = 0;
@@ -48,9 +40,10 @@ class Engine {
   virtual double edit(const LocalRegion& region, EditOperation operation, float value) = 0;
 
   virtual Fields fields() const = 0;
-  virtual double poured() const = 0;       ///< by pours and edits [m³]
-  virtual double left() const = 0;         ///< over open edges, by pours and edits [m³]
-  virtual double bodyOverlap() const = 0;  ///< at the last rays [m³]
+  virtual double poured() const = 0;  ///< by pours and edits [m³]
+  virtual double left() const = 0;    ///< over open edges, by pours and edits [m³]
+  /// Sand inside of these bodies. [m³]
+  virtual double overlap(const std::vector<PlacedBody>& bodies) = 0;
 
   virtual ContactSnapshot contacts() const = 0;
   /// Goes on from fields and contacts that were taken from an engine like this one.
@@ -64,7 +57,8 @@ struct EngineStart {
   OpenEdges open;
   Fields fields;
   LocalMaterialFields material;
-  bool with_slopes;  ///< minmod reconstruction
+  bool with_slopes;   ///< minmod reconstruction
+  bool displacement;  ///< see SimulatorParameters
 };
 
 /// @param sleeping whether cells that cannot move are left out

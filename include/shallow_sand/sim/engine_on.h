@@ -7,26 +7,12 @@
 #include <utility>
 
 #include "shallow_sand/coupling/displacement.h"
-#include "shallow_sand/coupling/rays.h"
-#include "shallow_sand/device/window_part.h"
+#include "shallow_sand/coupling/flow_loads.h"
+#include "shallow_sand/coupling/meet_bodies.h"
 #include "shallow_sand/sim/engine.h"
 #include "shallow_sand/solver/change_sand.h"
 
 namespace shallow_sand {
-
-/// Copies what the displacement wrote back to the state.
-struct CopyState {
-  SandFieldsOut from;
-  SandFieldsOut to;
-  int columns;
-
-  SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {
-    const long long at = static_cast<long long>(j) * columns + i;
-    to.depth[at] = from.depth[at];
-    to.momentum_x[at] = from.momentum_x[at];
-    to.momentum_y[at] = from.momentum_y[at];
-  }
-};
 
 /// The engine on one backend. Executor: HostExecutor or CudaExecutor; Stepper: what computes a step on it.
 template <class Executor, class Stepper>
@@ -55,7 +41,7 @@ class EngineOn : public Engine {
     Memory<float> distance(field.distance.size());
     distance.upload(field.distance.data(), field.distance.size());
     distance_fields_.push_back(std::move(distance));
-    if (contacts_.empty()) contacts_.emplace_back(grid_.cells());
+    if (contacts_.empty()) contacts_.emplace_back(bed_);
   }
 
   void removeBody(std::size_t body) override { distance_fields_[body] = Memory<float>(0); }
@@ -71,63 +57,39 @@ class EngineOn : public Engine {
     pours_.push_back(std::move(pour));
   }
 
-  void castRays(const std::vector<PlacedBody>& bodies) override {
+  void moveBodies(const std::vector<PlacedBody>& bodies) override {
     if (contacts_.empty()) return;
-    const Window before = window_;
-    window_ = Window{};
-    std::vector<BodyView> views;
-    for (const PlacedBody& placed : bodies) {
-      BodyView view = placed.view;
-      view.field.distance = distance_fields_[placed.body].data();
-      views.push_back(view);
-      window_ = window_.united(placed.window);
-    }
-    // One more column on each side is free to take sand; cells that a body has left are cast once more, to be
-    // cleared.
-    window_ = window_.grown(1, grid_);
-    const Window cast = window_.united(before);
-    if (cast.empty()) return;
-    stepper_.touch(cast);
-    if (views.size() > view_capacity_) {
-      views_.clear();
-      views_.emplace_back(views.size());
-      view_capacity_ = views.size();
-    }
-    if (!views.empty()) views_.front().upload(views.data(), views.size());
-    executor_.forEachCell(
-        cast, CastRays{views_.empty() ? nullptr : views_.front().data(), static_cast<int>(views.size()),
-                       state_.depth.data(), bed_.data(), contact(), grid_.columns, grid_.spacing});
-  }
-
-  void displace() override {
-    if (window_.empty()) return;
-    int* distance = contacts_.front().distance.data();
-    executor_.forEachCell(Window::line(window_.columns()),
-                          DistanceAlongColumns{contact(), state_.depth.data(), distance, grid_.columns,
-                                               grid_.spacing, window_});
-    executor_.forEachCell(Window::line(window_.rows()), DistanceAlongRows{distance, grid_.columns, window_});
-    executor_.forEachCell(window_,
-                          DisplaceSand{contact(), distance, state_.depth.data(), state_.momentum_x.data(),
-                                       state_.momentum_y.data(), next_.depth.data(), next_.momentum_x.data(),
-                                       next_.momentum_y.data(), grid_.columns, grid_.spacing, window_});
-    executor_.forEachCell(window_, CopyState{writable(next_), writable(state_), grid_.columns});
+    std::vector<Window> touched;
+    // One more column on each side is free to take sand.
+    for (const PlacedBody& body : bodies) touched.push_back(body.window.grown(1, grid_));
+    const std::vector<Window> now = withoutOverlap(touched);
+    // Cells that a body has left are looked at once more, to be cleared.
+    touched.insert(touched.end(), windows_.begin(), windows_.end());
+    forEachBins(bodies, withoutOverlap(touched), [this](const BodyBins& bins) { makeWay(bins); });
+    windows_ = now;
   }
 
   float attempt(float dt) override {
     attempted_ = stepOf(dt);
-    const float speed = stepper_.attempt(attempted_, window_, writable(next_));
-    if (window_.empty()) return speed;
-    return std::max(speed, executor_.maximumOverCells(window_, ContactSpeed{contact(), grid_.columns}));
+    float speed = stepper_.attempt(attempted_, windows_, layer(next_));
+    for (const Window& window : windows_) {
+      speed = std::max(speed, executor_.maximumOverCells(
+                                  window, ContactSpeed{contact(), columns(), attempted_.in.layer_fraction,
+                                                       attempted_.in.layer_depth, sand_, grid_.columns}));
+    }
+    return speed;
   }
 
   long long accept() override {
     // Edge faces have no slopes.
-    withStep(attempted_, !window_.empty(), false, [&](const auto& step) {
+    withStep(attempted_, !windows_.empty(), false, [&](const auto& step) {
       for (const Window& side : perimeterOf(stepper_.stepped(), open_, grid_.columns, grid_.rows))
         executor_.forEachCell(side, CountOutflow<std::decay_t<decltype(step)>>{step, left_.data()});
     });
     std::swap(state_, next_);
-    return stepper_.accept();
+    const long long computed = stepper_.accept();
+    flowLoads();
+    return computed;
   }
 
   void pour(std::size_t number, double volume) override {
@@ -153,8 +115,16 @@ class EngineOn : public Engine {
   }
 
   Fields fields() const override {
-    return {downloaded(bed_), downloaded(state_.depth), downloaded(state_.momentum_x),
-            downloaded(state_.momentum_y)};
+    Fields fields{downloaded(bed_), downloaded(state_.depth), downloaded(state_.momentum_x),
+                  downloaded(state_.momentum_y)};
+    if (contacts_.empty()) return fields;
+    const Contacts& c = contacts_.front();
+    fields.load = downloaded(c.hidden.depth);
+    fields.load_momentum_x = downloaded(c.hidden.momentum_x);
+    fields.load_momentum_y = downloaded(c.hidden.momentum_y);
+    fields.load_elevation = downloaded(c.top);
+    swapWhereClosed(downloaded(c.closed), fields);
+    return fields;
   }
 
   double poured() const override {
@@ -169,42 +139,55 @@ class EngineOn : public Engine {
     return depth * grid_.cellArea();
   }
 
-  double bodyOverlap() const override {
-    if (window_.empty()) return 0.0;
-    const std::vector<float> overlap = inWindow(contacts_.front().overlap);
-    const double depth = std::accumulate(overlap.begin(), overlap.end(), 0.0);
-    return depth * grid_.cellArea();
+  double overlap(const std::vector<PlacedBody>& bodies) override {
+    if (contacts_.empty()) return 0.0;
+    Memory<float> overlap(grid_.cells());
+    std::vector<Window> windows;
+    for (const PlacedBody& body : bodies) windows.push_back(body.window);
+    forEachBins(bodies, withoutOverlap(windows), [&](const BodyBins& bins) {
+      executor_.forEachCell(bins.window,
+                            MeasureOverlap{bins, columns(), bed_.data(), contacts_.front().top.data(),
+                                           overlap.data(), grid_.columns, grid_.spacing});
+    });
+    const std::vector<float> depths = downloaded(overlap);
+    return std::accumulate(depths.begin(), depths.end(), 0.0) * grid_.cellArea();
   }
 
   ContactSnapshot contacts() const override {
     ContactSnapshot snapshot;
-    snapshot.window = window_;
-    if (window_.empty()) return snapshot;
+    snapshot.windows = windows_;
+    if (windows_.empty()) return snapshot;
     const Contacts& c = contacts_.front();
-    snapshot.ceiling = inWindow(c.ceiling);
-    snapshot.length = inWindow(c.length);
-    snapshot.velocity_x = inWindow(c.velocity_x);
-    snapshot.velocity_y = inWindow(c.velocity_y);
+    snapshot.clearance = downloaded(c.clearance);
+    snapshot.headroom = downloaded(c.headroom);
+    snapshot.length = downloaded(c.length);
+    snapshot.velocity_x = downloaded(c.velocity_x);
+    snapshot.velocity_y = downloaded(c.velocity_y);
+    snapshot.velocity_z = downloaded(c.velocity_z);
+    const std::vector<std::uint8_t> closed = downloaded(c.closed);
+    snapshot.closed.assign(closed.begin(), closed.end());
     return snapshot;
   }
 
   void restore(const Fields& fields, const ContactSnapshot& contacts) override {
     bed_ = uploaded(fields.bed);
-    state_ = uploadedState(fields);
-    next_ = uploadedState(fields);
     stepper_.touch(Window::all(grid_));
-    window_ = contacts.window;
+    windows_ = contacts.windows;
+    const std::vector<std::uint8_t> closed(contacts.closed.begin(), contacts.closed.end());
+    Fields layers = fields;
+    if (!windows_.empty()) swapWhereClosed(closed, layers);
+    state_ = uploadedState(layers);
+    next_ = uploadedState(layers);
     if (contacts_.empty()) return;
-    contacts_.front() = Contacts(grid_.cells());
-    Contacts& c = contacts_.front();
-    putInWindow(contacts.ceiling, c.ceiling);
-    putInWindow(contacts.length, c.length);
-    putInWindow(contacts.velocity_x, c.velocity_x);
-    putInWindow(contacts.velocity_y, c.velocity_y);
+    contacts_.front() = Contacts(bed_);
+    if (!windows_.empty()) restoreContacts(layers, contacts, closed);
   }
 
  private:
   struct State {
+    explicit State(std::size_t cells) : depth(cells), momentum_x(cells), momentum_y(cells) {}
+    State(Memory<float> h, Memory<float> hu, Memory<float> hv)
+        : depth(std::move(h)), momentum_x(std::move(hu)), momentum_y(std::move(hv)) {}
     Memory<float> depth;
     Memory<float> momentum_x;
     Memory<float> momentum_y;
@@ -214,21 +197,126 @@ class EngineOn : public Engine {
   }
 
   struct Contacts {
-    explicit Contacts(std::size_t cells)
-        : ceiling(cells, std::numeric_limits<float>::infinity()),
-          length(cells),
-          velocity_x(cells),
-          velocity_y(cells),
-          velocity_z(cells),
-          overlap(cells),
-          distance(cells) {}
-    Memory<float> ceiling;
+    explicit Contacts(const Memory<float>& bed)
+        : clearance(bed.size(), std::numeric_limits<float>::infinity()),
+          top(bed.size()),
+          headroom(bed.size(), std::numeric_limits<float>::infinity()),
+          length(bed.size()),
+          velocity_x(bed.size()),
+          velocity_y(bed.size()),
+          velocity_z(bed.size()),
+          swept(bed.size()),
+          hidden(bed.size()),
+          next_hidden(bed.size()),
+          visible_bed(uploaded(downloaded(bed))),
+          ceiling(bed.size(), std::numeric_limits<float>::infinity()),
+          closed(bed.size()),
+          distance(bed.size()) {}
+    Memory<float> clearance;
+    Memory<float> top;
+    Memory<float> headroom;
     Memory<float> length;
     Memory<float> velocity_x;
     Memory<float> velocity_y;
     Memory<float> velocity_z;
-    Memory<float> overlap;
+    Memory<std::uint8_t> swept;
+    State hidden;
+    State next_hidden;
+    Memory<float> visible_bed;
+    Memory<float> ceiling;
+    Memory<std::uint8_t> closed;
     Memory<int> distance;
+  };
+
+  void makeWay(const BodyBins& bins) {
+    const Window& window = bins.window;
+    stepper_.touch(window);
+    int* distance = contacts_.front().distance.data();
+    const SandLayer ground = layer(next_);
+    const SandLayer load = layer(contacts_.front().next_hidden);
+    executor_.forEachCell(window, MeetBodies{bins, columns(), contact(), bed_.data(), ground, load,
+                                             grid_.columns, grid_.spacing});
+    executor_.forEachCell(Window::line(window.columns()),
+                          DistanceAlongColumns{contact().clearance, ground.depth, distance, grid_.columns,
+                                               grid_.spacing, window});
+    executor_.forEachCell(Window::line(window.rows()), DistanceAlongRows{distance, grid_.columns, window});
+    executor_.forEachCell(window, DisplaceSand{contact(), distance, ground, load, bed_.data(), columns(),
+                                               grid_.columns, grid_.spacing, window});
+  }
+
+  void flowLoads() {
+    for (const Window& window : windows_) {
+      FlowLoads flow{Step<true, false>{attempted_},       columns(), contact(), bed_.data(), layer(next_),
+                     layer(contacts_.front().next_hidden)};
+      executor_.forEachCell(window, flow);
+      executor_.forEachCell(window, CopyLoads{flow});
+    }
+  }
+
+  /// Calls function(bins) for each window, with the bodies in it.
+  template <class Function>
+  void forEachBins(const std::vector<PlacedBody>& bodies, const std::vector<Window>& windows,
+                   const Function& function) {
+    std::vector<BodyView> views;
+    for (const PlacedBody& placed : bodies) {
+      views.push_back(placed.view);
+      views.back().field.distance = distance_fields_[placed.body].data();
+    }
+    const BinLists lists = binLists(bodies, windows);
+    views_.upload(views);
+    bin_first_.upload(lists.first);
+    bin_members_.upload(lists.members);
+    for (std::size_t k = 0; k < windows.size(); ++k) {
+      function(BodyBins{views_.data(), bin_first_.data() + lists.first_begins[k], bin_members_.data(),
+                        windows[k], lists.across[k]});
+    }
+  }
+
+  /// Ground and load become what a step sees and what it does not, or the other way round.
+  static void swapWhereClosed(const std::vector<std::uint8_t>& closed, Fields& fields) {
+    for (std::size_t k = 0; k < closed.size(); ++k) {
+      if (closed[k] == 0) continue;
+      std::swap(fields.depth[k], fields.load[k]);
+      std::swap(fields.momentum_x[k], fields.load_momentum_x[k]);
+      std::swap(fields.momentum_y[k], fields.load_momentum_y[k]);
+    }
+  }
+
+  void restoreContacts(const Fields& layers, const ContactSnapshot& contacts,
+                       const std::vector<std::uint8_t>& closed) {
+    Contacts& c = contacts_.front();
+    c.clearance = uploaded(contacts.clearance);
+    c.top = uploaded(layers.load_elevation);
+    c.headroom = uploaded(contacts.headroom);
+    c.length = uploaded(contacts.length);
+    c.velocity_x = uploaded(contacts.velocity_x);
+    c.velocity_y = uploaded(contacts.velocity_y);
+    c.velocity_z = uploaded(contacts.velocity_z);
+    c.closed = uploaded(closed);
+    c.hidden = {uploaded(layers.load), uploaded(layers.load_momentum_x), uploaded(layers.load_momentum_y)};
+    std::vector<float> bed = layers.bed;
+    std::vector<float> ceiling = contacts.clearance;
+    for (std::size_t k = 0; k < closed.size(); ++k) {
+      if (closed[k] == 0) continue;
+      bed[k] = layers.load_elevation[k];
+      ceiling[k] = contacts.headroom[k];
+    }
+    c.visible_bed = uploaded(bed);
+    c.ceiling = uploaded(ceiling);
+  }
+
+  /// Memory for lists whose length changes from step to step.
+  template <class T>
+  class GrowingMemory {
+   public:
+    void upload(const std::vector<T>& values) {
+      if (values.size() > memory_.size()) memory_ = Memory<T>(values.size());
+      if (!values.empty()) memory_.upload(values.data(), values.size());
+    }
+    const T* data() const { return memory_.data(); }
+
+   private:
+    Memory<T> memory_{0};
   };
 
   struct PourOnBackend {
@@ -251,23 +339,16 @@ class EngineOn : public Engine {
     change.depth = state_.depth.data();
     change.momentum_x = state_.momentum_x.data();
     change.momentum_y = state_.momentum_y.data();
-    change.bed = bed_.data();
+    change.bed = visibleBed();
+    if (!contacts_.empty()) change.awnings = {columns().hidden.depth, columns().ceiling, columns().closed};
     change.taken = taken.data();
     executor_.forEachCell(change.window, change);
     stepper_.touch(change.window);
   }
 
-  std::vector<float> inWindow(const Memory<float>& field) const {
-    return partOf(downloaded(field), window_, grid_);
-  }
-  void putInWindow(const std::vector<float>& part, Memory<float>& field) const {
-    std::vector<float> values = downloaded(field);
-    putPart(part, window_, grid_, values);
-    field.upload(values.data(), values.size());
-  }
-
-  static Memory<float> uploaded(const std::vector<float>& values) {
-    Memory<float> memory(values.size());
+  template <class T>
+  static Memory<T> uploaded(const std::vector<T>& values) {
+    Memory<T> memory(values.size());
     memory.upload(values.data(), values.size());
     return memory;
   }
@@ -278,14 +359,23 @@ class EngineOn : public Engine {
     return values;
   }
 
-  SandFieldsOut writable(State& state) const {
+  static SandLayer layer(State& state) {
     return {state.depth.data(), state.momentum_x.data(), state.momentum_y.data()};
   }
 
   ContactFields contact() {
     Contacts& c = contacts_.front();
-    return {c.ceiling.data(),    c.length.data(),     c.velocity_x.data(),
-            c.velocity_y.data(), c.velocity_z.data(), c.overlap.data()};
+    return {c.clearance.data(),  c.top.data(),        c.headroom.data(),   c.length.data(),
+            c.velocity_x.data(), c.velocity_y.data(), c.velocity_z.data(), c.swept.data()};
+  }
+
+  SandColumns columns() {
+    Contacts& c = contacts_.front();
+    return {layer(state_), layer(c.hidden), c.visible_bed.data(), c.ceiling.data(), c.closed.data()};
+  }
+
+  const float* visibleBed() const {
+    return contacts_.empty() ? bed_.data() : contacts_.front().visible_bed.data();
   }
 
   StepArguments stepOf(float dt) {
@@ -294,8 +384,8 @@ class EngineOn : public Engine {
     step.in = {state_.depth.data(),
                state_.momentum_x.data(),
                state_.momentum_y.data(),
-               bed_.data(),
-               window_.empty() ? nullptr : contacts_.front().ceiling.data(),
+               visibleBed(),
+               windows_.empty() ? nullptr : contacts_.front().ceiling.data(),
                uniform ? nullptr : repose_rise_.data(),
                uniform ? nullptr : layer_fraction_.data(),
                uniform ? nullptr : layer_depth_.data()};
@@ -329,10 +419,11 @@ class EngineOn : public Engine {
   double edited_in_ = 0.0;  // depth, summed over cells [m]
   double edited_out_ = 0.0;
   std::vector<Memory<float>> distance_fields_;
-  std::vector<Contacts> contacts_;       // none or one: maps without bodies need none
-  std::vector<Memory<BodyView>> views_;  // none or one
-  std::size_t view_capacity_ = 0;
-  Window window_;  // columns that bodies may touch, at the last rays
+  std::vector<Contacts> contacts_;  // none or one: maps without bodies need none
+  GrowingMemory<BodyView> views_;
+  GrowingMemory<int> bin_first_;
+  GrowingMemory<int> bin_members_;
+  std::vector<Window> windows_;  // columns that bodies may touch, at the last rays; they do not overlap
 };
 
 }  // namespace shallow_sand

@@ -30,6 +30,8 @@ struct SimulatorParameters {
   SolverParameters solver;
   Backend backend = Backend::automatic;
   int threads = 0;  ///< of the CPU backend; 0: as many as OpenMP offers
+  /// Whether sand makes way for bodies; false: Eq. 20 to 24 alone, to compare with the paper.
+  bool displacement = true;
   /// These two change no bit, only speed; for tests and benchmarks of the CPU backend.
   bool sleeping = true;                        ///< leave out cells that cannot move
   std::optional<InstructionSet> instructions;  ///< the fastest of the machine unless given
@@ -54,14 +56,17 @@ struct Progress {
   double last_step = 0.0;            ///< [s]
 };
 
-/// What the last rays found in the columns that bodies may touch; row-major over the window, which is empty
-/// if there are none. A run goes on from it, for rays see the sand as it was before bodies pushed it away.
+/// What the last rays found, one value a cell each; all empty if no body is over the map. A run goes on from
+/// it, for what lies on bodies depends on where they were.
 struct ContactSnapshot {
-  Window window;
-  std::vector<float> ceiling;     ///< depth of sand that fits under a body, infinite without one [m]
-  std::vector<float> length;      ///< of the body within the sand [m]
+  std::vector<Window> windows;   ///< columns that bodies may touch
+  std::vector<float> clearance;  ///< depth of sand that fits under the lowest body, infinite without one [m]
+  std::vector<float> headroom;  ///< depth of sand that fits between it and the next, infinite without one [m]
+  std::vector<float> closed;    ///< 1 where it touches the ground's sand, else 0
+  std::vector<float> length;    ///< of it within the ground's sand [m]
   std::vector<float> velocity_x;  ///< of the body [m/s]
   std::vector<float> velocity_y;
+  std::vector<float> velocity_z;
 };
 
 /// Everything that a run needs to go on bit for bit, besides what it was built from: parameters, material,

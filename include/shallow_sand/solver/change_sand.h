@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
 #include "shallow_sand/core/parameters.h"
 #include "shallow_sand/device/window.h"
@@ -26,6 +27,17 @@ LocalRegion localRegion(const Region& region, const Grid& grid);
 /// Cells whose centres may be in a region.
 Window windowOf(const LocalRegion& region, const Grid& grid);
 
+/// Where sand that falls does not reach the ground, for bodies hang above it. All null where there are none.
+struct Awnings {
+  float* depth;                ///< of the sand on them [m]
+  const float* ceiling;        ///< of the ground's sand, infinite without a body above [m]
+  const std::uint8_t* closed;  ///< whether the body touches the ground's sand, which is then that on the body
+
+  SHALLOW_SAND_HOST_DEVICE bool covers(long long at) const {
+    return depth != nullptr && closed[at] == 0 && ceiling[at] < 1e30f;
+  }
+};
+
 /// Changes the depth of sand in a region, and counts what each cell really took: its float rounds every
 /// addition. Sand that is taken away takes its momentum along; sand that is added has none.
 struct ChangeSand {
@@ -33,6 +45,7 @@ struct ChangeSand {
   float* momentum_x;
   float* momentum_y;
   const float* bed;
+  Awnings awnings;
   double* taken;  ///< depth by which each cell of the window has grown so far, row-major [m]
   Window window;
   int columns;
@@ -61,7 +74,8 @@ struct ChangeSand {
   SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {
     if (!covers(i, j)) return;
     const long long at = static_cast<long long>(j) * columns + i;
-    const float before = depth[at];
+    float& h = operation == EditOperation::add && awnings.covers(at) ? awnings.depth[at] : depth[at];
+    const float before = h;
     const float after = changed(before, bed[at]);
     if (after < before) {
       const float kept = after / before;
@@ -69,7 +83,7 @@ struct ChangeSand {
       momentum_x[at] = kept * momentum_x[at] + 0.0f;
       momentum_y[at] = kept * momentum_y[at] + 0.0f;
     }
-    depth[at] = after;
+    h = after;
     taken[static_cast<long long>(j - window.row_begin) * window.columns() + (i - window.column_begin)] +=
         static_cast<double>(after) - static_cast<double>(before);
   }

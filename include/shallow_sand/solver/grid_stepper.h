@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "shallow_sand/solver/step.h"
 
 namespace shallow_sand {
@@ -16,7 +18,7 @@ class GridStepper {
 
   /// Computes the next state. Returns the largest signal speed of the present one. [m/s]
   /// @param bodies columns that bodies may touch
-  float attempt(const StepArguments& arguments, const Window& bodies, const SandFieldsOut& out) {
+  float attempt(const StepArguments& arguments, const std::vector<Window>& bodies, const SandFieldsOut& out) {
     stepped_ = {0, 0, arguments.columns, arguments.rows};
     return withStep(arguments, !bodies.empty(), with_slopes_, [&](const auto& step) {
       return executor_.maximumOverCells(stepped_, StepCell<std::decay_t<decltype(step)>>{step, out});

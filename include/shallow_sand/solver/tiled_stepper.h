@@ -27,7 +27,7 @@ class TiledStepper {
 
   /// Computes the next state. Returns the largest signal speed of the present one. [m/s]
   /// @param bodies columns that bodies may touch
-  float attempt(const StepArguments& arguments, const Window& bodies, const SandFieldsOut& out);
+  float attempt(const StepArguments& arguments, const std::vector<Window>& bodies, const SandFieldsOut& out);
   /// A window that holds all cells that the last attempt computed.
   const Window& stepped() const { return stepped_; }
   /// The last attempt is the new state. Returns how many cells it computed.

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "shallow_sand/coupling/body_bins.h"
+#include "shallow_sand/device/window.h"
+
+namespace shallow_sand {
+
+/// A body at one instant; `view.field.distance` is filled in by the engine.
+struct PlacedBody {
+  std::size_t body;
+  BodyView view;
+  Window window;  ///< columns it may touch
+};
+
+/// Rectangles that hold all the given ones, and do not overlap.
+std::vector<Window> withoutOverlap(std::vector<Window> windows);
+
+/// The members of BodyBins for several windows, in lists of their own for each.
+struct BinLists {
+  std::vector<int> first;
+  std::vector<int> members;               ///< indices in the list of placed bodies
+  std::vector<std::size_t> first_begins;  ///< where each window's part of `first` begins
+  std::vector<int> across;                ///< bins along x of each window
+};
+
+BinLists binLists(const std::vector<PlacedBody>& bodies, const std::vector<Window>& windows);
+
+}  // namespace shallow_sand
