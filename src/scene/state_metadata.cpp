@@ -56,9 +56,10 @@ void describe(const Snapshot& snapshot, Metadata& metadata) {
   metadata["ledger.now"] = exact(snapshot.ledger.now);
   metadata["bodies_cleared"] = snapshot.bodies_cleared ? "1" : "0";
   std::ostringstream windows;
+  windows << snapshot.contacts.windows.size();
   for (const Window& window : snapshot.contacts.windows) {
-    windows << window.column_begin << " " << window.row_begin << " " << window.column_end << " "
-            << window.row_end << " ";
+    windows << " " << window.column_begin << " " << window.row_begin << " " << window.column_end << " "
+            << window.row_end;
   }
   metadata["contacts.windows"] = windows.str();
 }
@@ -87,14 +88,16 @@ std::uint64_t countOf(const Metadata& metadata, const std::string& key) {
 std::vector<Window> windowsOf(const Metadata& metadata, const std::string& key, const Grid& grid) {
   std::vector<Window> windows;
   std::istringstream text(textOf(metadata, key));
+  std::size_t count = 0;
+  text >> count;
   Window w;
-  while (text >> w.column_begin >> w.row_begin >> w.column_end >> w.row_end) {
+  while (windows.size() < count && text >> w.column_begin >> w.row_begin >> w.column_end >> w.row_end) {
     const bool on_grid = w.column_begin >= 0 && w.row_begin >= 0 && !w.empty() &&
                          w.column_end <= grid.columns && w.row_end <= grid.rows;
     if (!on_grid) break;
     windows.push_back(w);
   }
-  if (!text.eof())
+  if (text.fail() || windows.size() != count)
     throw InvalidParameter(key, textOf(metadata, key), "columns and rows of rectangles on the grid");
   return windows;
 }
