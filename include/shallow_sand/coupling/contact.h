@@ -42,6 +42,21 @@ struct ContactFields {
   SHALLOW_SAND_HOST_DEVICE bool isCovered(long long at) const { return clearance[at] < 1e30f; }
 };
 
+/// w̃ of Eq. 20, of a column of depth h in which a body takes up `length`. [m/s]
+SHALLOW_SAND_HOST_DEVICE inline float meanVerticalVelocity(float length, float velocity_z, float h) {
+  return length > 0.0f && h > 0.0f ? length * velocity_z / h : 0.0f;
+}
+
+/// Momentum of sand beside a body that moves up or down (Eq. 24), where w̃ differs by `difference` [m/s] from
+/// one neighbour to the other. The paper adds ΔL/2·Δw̃ in every step, so that it grows with their number;
+/// here it is what the momentum is brought to. Sand thinner than half a cell is pushed no faster than the
+/// body moves. [m²/s]
+SHALLOW_SAND_HOST_DEVICE inline float pushedAside(float momentum, float h, float difference, float spacing) {
+  const float target = minimum(0.5f * spacing, h) * difference;
+  if (target > 0.0f) return maximum(momentum, target);
+  return target < 0.0f ? minimum(momentum, target) : momentum;
+}
+
 /// Columns with two layers of sand: the ground's, on the bed, and a load on the lowest solid. Where ground
 /// and solid touch, the column is closed: its surface is the load's, and a step sees the solid as ground with
 /// the load on it, while the sand below keeps still. Elsewhere a step sees the ground, and loads flow by

@@ -97,9 +97,7 @@ struct DisplaceSand {
   float spacing;
   Window window;  ///< its outermost cells are clear of bodies or at the edge of the grid
 
-  SHALLOW_SAND_HOST_DEVICE bool inside(int i, int j) const {
-    return i >= window.column_begin && i < window.column_end && j >= window.row_begin && j < window.row_end;
-  }
+  SHALLOW_SAND_HOST_DEVICE bool inside(int i, int j) const { return window.holds(i, j); }
   SHALLOW_SAND_HOST_DEVICE long long index(int i, int j) const {
     return static_cast<long long>(j) * across + i;
   }
@@ -176,21 +174,10 @@ struct DisplaceSand {
     return {room, 0.0f, 0.0f};
   }
 
-  /// w̃ of Eq. 20. [m/s]
   SHALLOW_SAND_HOST_DEVICE float verticalVelocity(int i, int j) const {
     if (!inside(i, j)) return 0.0f;
     const long long at = index(i, j);
-    const float h = ground.depth[at];
-    return contact.length[at] > 0.0f && h > 0.0f ? contact.length[at] * contact.velocity_z[at] / h : 0.0f;
-  }
-
-  /// Momentum of sand beside a body that moves up or down (Eq. 24). The paper adds ΔL/2·Δw̃ in every step, so
-  /// that it grows with their number; here it is what the momentum is brought to. Sand thinner than half a
-  /// cell is pushed no faster than the body moves.
-  SHALLOW_SAND_HOST_DEVICE float pushed(float momentum, float h, float difference) const {
-    const float target = minimum(0.5f * spacing, h) * difference;
-    if (target > 0.0f) return maximum(momentum, target);
-    return target < 0.0f ? minimum(momentum, target) : momentum;
+    return meanVerticalVelocity(contact.length[at], contact.velocity_z[at], ground.depth[at]);
   }
 
   SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {
@@ -206,8 +193,10 @@ struct DisplaceSand {
     const bool closed = covered && isFull(below.h, contact.clearance[at], spacing);
     if (below.h > 0.0f && !closed) {
       // As Eq. 23 has it, hu takes the difference along x only, hv the one along y only.
-      below.hu = pushed(below.hu, below.h, verticalVelocity(i + 1, j) - verticalVelocity(i - 1, j));
-      below.hv = pushed(below.hv, below.h, verticalVelocity(i, j + 1) - verticalVelocity(i, j - 1));
+      below.hu =
+          pushedAside(below.hu, below.h, verticalVelocity(i + 1, j) - verticalVelocity(i - 1, j), spacing);
+      below.hv =
+          pushedAside(below.hv, below.h, verticalVelocity(i, j + 1) - verticalVelocity(i, j - 1), spacing);
     }
     if (closed) below = {below.h, 0.0f, 0.0f};
     columns.closed[at] = closed ? 1 : 0;
@@ -234,7 +223,6 @@ struct ContactSpeed {
 
   SHALLOW_SAND_HOST_DEVICE float operator()(int i, int j) const {
     const long long at = static_cast<long long>(j) * across + i;
-    if (!contact.isCovered(at)) return 0.0f;
     const Sand load = columns.load(at);
     float speed = 0.0f;
     if (contact.length[at] > 0.0f || load.h > 0.0f) {

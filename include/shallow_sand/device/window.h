@@ -31,6 +31,9 @@ struct Window {
 
   SHALLOW_SAND_HOST_DEVICE int columns() const { return column_end - column_begin; }
   SHALLOW_SAND_HOST_DEVICE int rows() const { return row_end - row_begin; }
+  SHALLOW_SAND_HOST_DEVICE bool holds(int i, int j) const {
+    return i >= column_begin && i < column_end && j >= row_begin && j < row_end;
+  }
   std::size_t cells() const { return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()); }
   bool empty() const { return columns() <= 0 || rows() <= 0; }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "shallow_sand/coupling/displacement.h"
+#include "shallow_sand/coupling/drag.h"
 #include "shallow_sand/coupling/flow_loads.h"
 #include "shallow_sand/coupling/meet_bodies.h"
 #include "shallow_sand/sim/engine.h"
@@ -29,6 +30,7 @@ class EngineOn : public Engine {
         grid_(start.grid),
         sand_(start.sand),
         open_(start.open),
+        displacement_(start.displacement),
         bed_(uploaded(start.fields.bed)),
         state_(uploadedState(start.fields)),
         next_(uploadedState(start.fields)),
@@ -65,7 +67,8 @@ class EngineOn : public Engine {
     const std::vector<Window> now = withoutOverlap(touched);
     // Cells that a body has left are looked at once more, to be cleared.
     touched.insert(touched.end(), windows_.begin(), windows_.end());
-    forEachBins(bodies, withoutOverlap(touched), [this](const BodyBins& bins) { makeWay(bins); });
+    forEachBins(bodies, withoutOverlap(touched),
+                [this](const BodyBins& bins) { displacement_ ? makeWay(bins) : drag(bins); });
     windows_ = now;
   }
 
@@ -244,6 +247,14 @@ class EngineOn : public Engine {
                                                grid_.columns, grid_.spacing, window});
   }
 
+  void drag(const BodyBins& bins) {
+    stepper_.touch(bins.window);
+    executor_.forEachCell(bins.window, FindSubmerged{bins, state_.depth.data(), bed_.data(), contact(),
+                                                     grid_.columns, grid_.spacing});
+    executor_.forEachCell(bins.window,
+                          DragSand{contact(), layer(state_), grid_.columns, grid_.spacing, bins.window});
+  }
+
   void flowLoads() {
     for (const Window& window : windows_) {
       FlowLoads flow{Step<true, false>{attempted_},       columns(), contact(), bed_.data(), layer(next_),
@@ -407,6 +418,7 @@ class EngineOn : public Engine {
   Grid grid_;
   SandConstants sand_;
   OpenEdges open_;
+  bool displacement_;
   Memory<float> bed_;
   State state_;
   State next_;
