@@ -1,0 +1,178 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "coupling/bodies_in_sand.h"
+
+namespace shallow_sand {
+namespace {
+
+constexpr double kSpacing = 0.02;
+constexpr double kSurface = 0.3;
+constexpr double kCut = 0.1;
+constexpr double kWidth = 1.2;
+constexpr double kHeight = 0.8;  ///< higher than any berm
+constexpr double kTravel = 1.0;
+constexpr double kFrictionAngle = 32.0;
+constexpr double kTolerance = 3.0;  ///< of a berm [degrees]
+const Eigen::Vector2d kSize{3.2, 2.4};
+const Eigen::Vector2d kStart{0.9, 1.2};  ///< of the blade's middle
+
+struct Blade {
+  double speed;  ///< [m/s]
+  double yaw;    ///< between its normal and its way [degrees]
+  int cells;     ///< it is thick
+};
+
+double thicknessOf(const Blade& blade) { return blade.cells * kSpacing; }
+double submerged(const Blade& blade) { return thicknessOf(blade) * kWidth * kCut; }
+double duration(const Blade& blade) { return kTravel / blade.speed; }
+
+/// Sand in which the blade already stands, so that it only has to move.
+Scene sceneOf(const Blade& blade) {
+  Scene scene = levelSand(kSize, kSpacing, kSurface);
+  const double height = kSurface - kCut + 0.5 * kHeight;
+  const Eigen::Vector3d from(kStart.x(), kStart.y(), height);
+  SceneBody body;
+  body.name = "blade";
+  body.shape = Box{{thicknessOf(blade), kWidth, kHeight}};
+  body.motion = straightMotion(from, from + Eigen::Vector3d(kTravel, 0.0, 0.0), blade.speed, 0.0,
+                               turned(blade.yaw * kDegree, Eigen::Vector3d::UnitZ()));
+  carve(scene, body, kSurface - kCut, {thicknessOf(blade), kWidth});
+  scene.bodies = {body};
+  return scene;
+}
+
+/// How far loose sand of a vertical wall as high as the cut may run: twice the height over the friction
+/// coefficient, were its whole depth to flow (a dam break with friction ends there).
+double slump() { return 2.0 * kCut / std::tan(kFrictionAngle * kDegree); }
+
+/// A place as seen from the blade: along its normal and along its edge, from its middle.
+Eigen::Vector2d fromBlade(const Blade& blade, const Eigen::Vector2d& place, double travelled) {
+  return Eigen::Rotation2Dd(-blade.yaw * kDegree) * (place - kStart - Eigen::Vector2d(travelled, 0.0));
+}
+
+/// Behind the blade's last place, on its way, and out of reach of the walls of its trench.
+bool onTrenchFloor(const Blade& blade, const Eigen::Vector2d& place) {
+  const double yaw = blade.yaw * kDegree;
+  const double half = 0.5 * (kWidth * std::cos(yaw) + thicknessOf(blade) * std::sin(yaw));
+  const double rear = -0.5 * thicknessOf(blade);
+  return std::abs(place.y() - kStart.y()) < half - slump() &&
+         fromBlade(blade, place, 0.0).x() > rear + slump() && fromBlade(blade, place, kTravel).x() < rear;
+}
+
+struct Range {
+  double least = std::numeric_limits<double>::infinity();
+  double most = -std::numeric_limits<double>::infinity();
+  int count = 0;
+  void add(double value) {
+    least = std::min(least, value);
+    most = std::max(most, value);
+    count += 1;
+  }
+};
+
+Range trenchDepth(const Blade& blade, const Grid& grid, const Fields& fields) {
+  Range trench;
+  for (int j = 0; j < grid.rows; ++j) {
+    for (int i = 0; i < grid.columns; ++i) {
+      if (onTrenchFloor(blade, {grid.x(i), grid.y(j)}))
+        trench.add(kSurface - visibleSurface(fields, grid.index(i, j)));
+    }
+  }
+  return trench;
+}
+
+/// Most that sand changed where only sand that came through the blade could change it. [m]
+double changeBehind(const Blade& blade, const Scene& scene, const Grid& grid, const Fields& fields) {
+  double most = 0.0;
+  for (int j = 0; j < grid.rows; ++j) {
+    for (int i = 0; i < grid.columns; ++i) {
+      const Eigen::Vector2d place = fromBlade(blade, {grid.x(i), grid.y(j)}, 0.0);
+      const bool behind = place.x() < -0.5 * thicknessOf(blade) - slump();
+      if (!behind || std::abs(place.y()) > 0.5 * kWidth) continue;
+      const std::size_t k = grid.index(i, j);
+      most = std::max(most, std::abs(sandOfColumn(fields, k) - static_cast<double>(scene.depth[k])));
+    }
+  }
+  return most;
+}
+
+/// Slope of the berm in front of the middle of the blade's last place. A blade at an angle pushes a heap that
+/// grows along it, so its flank does not fall along the blade's normal. [degrees]
+double bermAngle(const Blade& blade, const Grid& grid, const Fields& fields) {
+  const Eigen::Vector2d normal(std::cos(blade.yaw * kDegree), std::sin(blade.yaw * kDegree));
+  const Eigen::Vector2d middle = kStart + Eigen::Vector2d(kTravel, 0.0);
+  const double front = 0.5 * thicknessOf(blade) + kSpacing;
+  const Eigen::Vector2d top = highestOnLine(grid, fields, middle + front * normal, normal, 0.6);
+  return steepestFlank(grid, fields, top, normal, kSurface) / kDegree;
+}
+
+class Blades : public testing::TestWithParam<Blade> {};
+
+TEST_P(Blades, CutATrenchAndPushABerm) {
+  const Blade blade = GetParam();
+  const Scene scene = sceneOf(blade);
+  Simulator simulator = buildSimulator(scene);
+  const double overlap_moving = runWatchingOverlap(simulator, duration(blade));
+  const Grid& grid = simulator.grid();
+  const Fields pushed = simulator.fields();
+  const Range trench = trenchDepth(blade, grid, pushed);
+  const double berm_pushed = bermAngle(blade, grid, pushed);
+  const bool settles = settle(simulator, 4.0);
+  const Fields rest = simulator.fields();
+  const Range trench_rest = trenchDepth(blade, grid, rest);
+  const double overlap_rest = simulator.bodyOverlap();
+  const double berm_rest = bermAngle(blade, grid, rest);
+  const double behind = changeBehind(blade, scene, grid, rest);
+
+  EXPECT_GT(trench.count, 100);
+  for (const Range& floor : {trench, trench_rest}) {
+    EXPECT_GT(floor.least, 0.98 * kCut);
+    EXPECT_LT(floor.most, 1.02 * kCut);
+  }
+  EXPECT_LT(overlap_moving, 0.01 * submerged(blade));
+  EXPECT_LT(overlap_rest, 0.01 * submerged(blade));
+  EXPECT_EQ(behind, 0.0);
+  EXPECT_LT(simulator.ledger().error(), 1e-6);
+  // A berm that is being pushed is no flatter than friction makes it; what a fast blade meets it must also
+  // bring up to its speed, which makes the berm steeper.
+  EXPECT_GT(berm_pushed, kFrictionAngle - kTolerance);
+  if (blade.speed < 0.5) {
+    EXPECT_LT(berm_pushed, kFrictionAngle + kTolerance);
+  }
+  // Once it rests no slope is steeper than friction holds. That of a slow blade had nothing to run out with.
+  EXPECT_LT(berm_rest, kFrictionAngle + 0.5);
+  if (blade.speed < 0.1) {
+    EXPECT_GT(berm_rest, kFrictionAngle - kTolerance);
+  }
+
+  std::printf(
+      "%4.2f m/s %2.0f deg %2d cells: trench %.4f..%.4f (rest %.4f..%.4f, %d columns), berm %.1f (rest "
+      "%.1f), "
+      "overlap %.2f %% (rest %.2f %%), behind %.1e m, settled %d at %.1f s, volume error %.0e\n",
+      blade.speed, blade.yaw, blade.cells, trench.least, trench.most, trench_rest.least, trench_rest.most,
+      trench.count, berm_pushed, berm_rest, 100.0 * overlap_moving / submerged(blade),
+      100.0 * overlap_rest / submerged(blade), behind, settles, simulator.time(), simulator.ledger().error());
+}
+
+std::vector<Blade> allBlades() {
+  std::vector<Blade> blades;
+  for (const double speed : {0.05, 0.2, 1.0}) {
+    for (const double yaw : {0.0, 30.0, 45.0}) {
+      for (const int cells : {1, 3, 20}) blades.push_back({speed, yaw, cells});
+    }
+  }
+  return blades;
+}
+
+std::string nameOf(const testing::TestParamInfo<Blade>& info) {
+  const Blade& blade = info.param;
+  return std::to_string(std::lround(100.0 * blade.speed)) + "cm_per_s_" +
+         std::to_string(std::lround(blade.yaw)) + "deg_" + std::to_string(blade.cells) + "cells";
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Blades, testing::ValuesIn(allBlades()), nameOf);
+
+}  // namespace
+}  // namespace shallow_sand
