@@ -14,12 +14,13 @@ namespace shallow_sand {
 
 /// Elevation of the top of the sand in a column, be it on the bed or on a body. [m]
 inline double visibleSurface(const Fields& fields, std::size_t cell) {
-  return static_cast<double>(fields.bed[cell]) + static_cast<double>(fields.depth[cell]);
+  return static_cast<double>(fields.surface(cell));
 }
 
 /// All sand of a column: under bodies and on them. [m]
 inline double sandOfColumn(const Fields& fields, std::size_t cell) {
-  return static_cast<double>(fields.depth[cell]);
+  const double load = fields.load.empty() ? 0.0 : static_cast<double>(fields.load[cell]);
+  return static_cast<double>(fields.depth[cell]) + load;
 }
 
 /// Elevation of the sand's surface, interpolated between the centres of four cells. [m]

@@ -55,7 +55,9 @@ TEST(BuriedPlate, MovesUnderTheSandWithABumpAboveAndNoTrenchBehind) {
   for (double x = from.x(); x < to.x() + 0.5 * kPlate.x(); x += kSpacing) {
     const double surface = surfaceAt(grid, pushed, {x, 0.6});
     if (x > to.x() - 0.5 * kPlate.x()) bump = std::max(bump, surface - kSurface);
-    if (x < to.x() - kPlate.x()) lowest = std::min(lowest, surface);
+    // Where the plate began it leaves a hollow of its own volume.
+    const double filled = from.x() + 0.5 * kPlate.x() + 2.0 * kPlate.z() / std::tan(32.0 * M_PI / 180.0);
+    if (x > filled && x < to.x() - kPlate.x()) lowest = std::min(lowest, surface);
   }
   std::printf("bump %.4f m, behind %.4f m lower than before; sand inside at most %.2f %%\n", bump,
               kSurface - lowest, 100.0 * most_inside / volume);

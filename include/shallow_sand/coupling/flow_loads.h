@@ -126,8 +126,7 @@ struct FlowLoads {
   SHALLOW_SAND_HOST_DEVICE void lean(bool forward, const Cell& own, const Cell& other, Change& change) const {
     const float level_rise = levelRise<along_x>(forward);
     const float level = own.s + level_rise;
-    const float surface =
-        maximum(Step<true, false>::surfaceOf(other, own, level_rise), level - 2.0f * step.sand.spacing);
+    const float surface = maximum(step.surfaceOf(other, own, level_rise), level - 2.0f * step.sand.spacing);
     const float rise = forward ? surface : -surface;
     (along_x ? change.rise_x : change.rise_y) += rise;
   }

@@ -7,9 +7,10 @@ namespace shallow_sand {
 
 /// Casts the ray of one column through all bodies as they stand now, and tells apart what of its sand lies
 /// under the lowest solid and what lies on it. Of sand into which a body has come,
-/// - all that stands above its underside lies on it, if the body is buried in it: a plate that moves through
-///   sand lifts what is above it;
-/// - else what is too much under it stays there for DisplaceSand to push aside.
+/// - all that stands above its underside lies on it, if the body is buried deeper than it is high: a plate
+///   that moves through sand lifts what is above it;
+/// - else what stands above its upper side lies on it, and what is too much under it stays there for
+///   DisplaceSand to push aside: sand runs over a low blade, and is pushed before it.
 /// A load rises and sinks with its solid, unless that rises at once by more than a cell and over the load:
 /// then a wall has come, and sweeps the load. Where no solid is left, the load falls on the ground.
 struct MeetBodies {
@@ -38,7 +39,8 @@ struct MeetBodies {
       below = {below.h + above.h, below.hu + above.hu, below.hv + above.hv};
       above = {};
     } else if (!was_closed && below.h > clearance && surface > solid.top) {
-      lift(below, above, clearance);
+      const bool buried = surface - solid.top >= solid.top - solid.bottom;
+      lift(below, above, buried ? clearance : solid.top - b);
     }
     contact.clearance[at] = clearance;
     contact.top[at] = solid.top;
@@ -54,11 +56,12 @@ struct MeetBodies {
   }
 
  private:
-  SHALLOW_SAND_HOST_DEVICE static void lift(Sand& below, Sand& above, float clearance) {
-    const float lifted = below.h - clearance;
+  /// All of the ground's sand that is deeper than `kept` becomes load.
+  SHALLOW_SAND_HOST_DEVICE static void lift(Sand& below, Sand& above, float kept) {
+    const float lifted = below.h - kept;
     const float part = lifted / below.h;
     above = {above.h + lifted, above.hu + part * below.hu, above.hv + part * below.hv};
-    below = {clearance, 0.0f, 0.0f};
+    below = {kept, below.hu - part * below.hu, below.hv - part * below.hv};
   }
 
   SHALLOW_SAND_HOST_DEVICE Vector3 velocityOf(const LowestSolid& solid, int i, int j, float surface) const {

@@ -351,7 +351,11 @@ class EngineOn : public Engine {
     change.momentum_x = state_.momentum_x.data();
     change.momentum_y = state_.momentum_y.data();
     change.bed = visibleBed();
-    if (!contacts_.empty()) change.awnings = {columns().hidden.depth, columns().ceiling, columns().closed};
+    if (!contacts_.empty()) {
+      const SandLayer loads = columns().hidden;
+      change.hanging = {loads.depth,   loads.momentum_x,  loads.momentum_y,
+                        contact().top, columns().ceiling, columns().closed};
+    }
     change.taken = taken.data();
     executor_.forEachCell(change.window, change);
     stepper_.touch(change.window);

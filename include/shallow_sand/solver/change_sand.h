@@ -27,13 +27,17 @@ LocalRegion localRegion(const Region& region, const Grid& grid);
 /// Cells whose centres may be in a region.
 Window windowOf(const LocalRegion& region, const Grid& grid);
 
-/// Where sand that falls does not reach the ground, for bodies hang above it. All null where there are none.
-struct Awnings {
-  float* depth;                ///< of the sand on them [m]
-  const float* ceiling;        ///< of the ground's sand, infinite without a body above [m]
-  const std::uint8_t* closed;  ///< whether the body touches the ground's sand, which is then that on the body
+/// Sand on bodies that hang over the ground's; all null where there are no bodies.
+struct HangingSand {
+  float* depth;  ///< [m]
+  float* momentum_x;
+  float* momentum_y;
+  const float* elevation;  ///< of what it lies on [m]
+  const float*
+      ceiling;  ///< depth of the ground's sand for which there is room, infinite if no body is above [m]
+  const std::uint8_t* closed;  ///< whether the body touches the ground's sand, and takes the ground's place
 
-  SHALLOW_SAND_HOST_DEVICE bool covers(long long at) const {
+  SHALLOW_SAND_HOST_DEVICE bool isAt(long long at) const {
     return depth != nullptr && closed[at] == 0 && ceiling[at] < 1e30f;
   }
 };
@@ -45,7 +49,7 @@ struct ChangeSand {
   float* momentum_x;
   float* momentum_y;
   const float* bed;
-  Awnings awnings;
+  HangingSand hanging;
   double* taken;  ///< depth by which each cell of the window has grown so far, row-major [m]
   Window window;
   int columns;
@@ -58,6 +62,22 @@ struct ChangeSand {
     return region.holds((static_cast<float>(i) + 0.5f) * spacing, (static_cast<float>(j) + 0.5f) * spacing);
   }
 
+  SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {
+    if (!covers(i, j)) return;
+    const long long at = static_cast<long long>(j) * columns + i;
+    double grown = 0.0;
+    if (hanging.isAt(at)) {
+      const float load = hanging.depth[at];
+      grown = become(hanging.depth[at], hanging.momentum_x[at], hanging.momentum_y[at], changedLoad(at));
+      grown += become(depth[at], momentum_x[at], momentum_y[at], changedUnder(at, load));
+    } else {
+      grown = become(depth[at], momentum_x[at], momentum_y[at], changed(depth[at], bed[at]));
+    }
+    taken[static_cast<long long>(j - window.row_begin) * window.columns() + (i - window.column_begin)] +=
+        grown;
+  }
+
+ private:
   SHALLOW_SAND_HOST_DEVICE float changed(float h, float b) const {
     switch (operation) {
       case EditOperation::add:
@@ -71,21 +91,29 @@ struct ChangeSand {
     }
   }
 
-  SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {
-    if (!covers(i, j)) return;
-    const long long at = static_cast<long long>(j) * columns + i;
-    float& h = operation == EditOperation::add && awnings.covers(at) ? awnings.depth[at] : depth[at];
+  /// Sand comes and goes from above: a body catches what falls, and what is taken is taken from it first.
+  SHALLOW_SAND_HOST_DEVICE float changedLoad(long long at) const {
+    if (operation == EditOperation::set) return maximum(value - hanging.ceiling[at], 0.0f);
+    return changed(hanging.depth[at], hanging.elevation[at]);
+  }
+  /// @param load what lay above before [m]
+  SHALLOW_SAND_HOST_DEVICE float changedUnder(long long at, float load) const {
+    if (operation == EditOperation::add) return depth[at];
+    if (operation == EditOperation::remove) return maximum(depth[at] - maximum(value - load, 0.0f), 0.0f);
+    return minimum(changed(depth[at], bed[at]), hanging.ceiling[at]);
+  }
+
+  /// Gives sand a new depth. Returns by how much it grew. [m]
+  SHALLOW_SAND_HOST_DEVICE static double become(float& h, float& hu, float& hv, float after) {
     const float before = h;
-    const float after = changed(before, bed[at]);
     if (after < before) {
       const float kept = after / before;
       // Adding 0 leaves no negative zeros, which would be bits that a step changes.
-      momentum_x[at] = kept * momentum_x[at] + 0.0f;
-      momentum_y[at] = kept * momentum_y[at] + 0.0f;
+      hu = kept * hu + 0.0f;
+      hv = kept * hv + 0.0f;
     }
     h = after;
-    taken[static_cast<long long>(j - window.row_begin) * window.columns() + (i - window.column_begin)] +=
-        static_cast<double>(after) - static_cast<double>(before);
+    return static_cast<double>(after) - static_cast<double>(before);
   }
 };
 

@@ -173,15 +173,16 @@ struct Step : StepArguments {
   }
 
   /// Whether a cell is a wall to a neighbour: closed, or under a body whose underside lies lower than the
-  /// neighbour's surface, so that the sand that could flow meets the body's side. A gap under a body lets
-  /// sand in only from below.
-  SHALLOW_SAND_HOST_DEVICE static bool isWall(const Cell& cell, const Cell& neighbour) {
-    return cell.room < 0.0f || (with_bodies && neighbour.s > cell.s + cell.room);
+  /// neighbour's surface, so that the sand that could flow meets the body's side. A gap that is lower than a
+  /// cell lets sand in only from below: blades would leak.
+  SHALLOW_SAND_HOST_DEVICE bool isWall(const Cell& cell, const Cell& neighbour) const {
+    const bool low = with_bodies && cell.room < sand.spacing && neighbour.s > cell.s + cell.room;
+    return cell.room < 0.0f || low;
   }
 
   /// Surface of a neighbour as the pressure sees it (Eq. 17): a wall is level with us, and so is a dry
   /// neighbour whose bed stands above our surface. [m]
-  SHALLOW_SAND_HOST_DEVICE static float surfaceOf(const Cell& neighbour, const Cell& own, float level_rise) {
+  SHALLOW_SAND_HOST_DEVICE float surfaceOf(const Cell& neighbour, const Cell& own, float level_rise) const {
     const float level = own.s + level_rise;
     const float surface = maximum(minimum(neighbour.s, level), neighbour.wet_surface);
     const bool wall = with_bodies && (isWall(neighbour, own) || isWall(own, neighbour));
