@@ -80,8 +80,7 @@ inline double surfaceNear(const RandomSand& sand, const Eigen::Vector2d& place) 
   return bedNear(sand, place) + static_cast<double>(sand.depth[cellNear(sand.parameters.grid.grid(), place)]);
 }
 
-/// A height for a body: at the surface, under it, or anywhere down to the
-/// bed. [m]
+/// A height for a body: at the surface, under it, or anywhere down to the bed. [m]
 inline double randomHeight(std::mt19937& random, const RandomSand& sand, const Eigen::Vector2d& place,
                            double radius) {
   const double surface = surfaceNear(sand, place);
