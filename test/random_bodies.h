@@ -63,25 +63,50 @@ inline Eigen::Isometry3d poseOf(const Eigen::Vector2d& place, double height,
   return Eigen::Translation3d(place.x(), place.y(), height) * rotation;
 }
 
-/// Surface of the sand where `place` is. [m]
-inline double surfaceNear(const RandomSand& sand, const Eigen::Vector2d& place) {
-  const Grid grid = sand.parameters.grid.grid();
+/// The cell in which `place` lies, or the nearest one.
+inline std::size_t cellNear(const Grid& grid, const Eigen::Vector2d& place) {
   const auto cell = [&](double position, double origin, int count) {
     return std::clamp(static_cast<int>((position - origin) / grid.spacing), 0, count - 1);
   };
-  const std::size_t k =
-      grid.index(cell(place.x(), grid.origin_x, grid.columns), cell(place.y(), grid.origin_y, grid.rows));
-  return static_cast<double>(sand.bed[k]) + static_cast<double>(sand.depth[k]);
+  return grid.index(cell(place.x(), grid.origin_x, grid.columns), cell(place.y(), grid.origin_y, grid.rows));
 }
 
-/// Moves the body and turns it, through the sand's surface or near it, from 0 to `stop` [s].
+inline double bedNear(const RandomSand& sand, const Eigen::Vector2d& place) {
+  return static_cast<double>(sand.bed[cellNear(sand.parameters.grid.grid(), place)]);
+}
+
+/// Surface of the sand where `place` is. [m]
+inline double surfaceNear(const RandomSand& sand, const Eigen::Vector2d& place) {
+  return bedNear(sand, place) + static_cast<double>(sand.depth[cellNear(sand.parameters.grid.grid(), place)]);
+}
+
+/// A height for a body: at the surface, under it, or anywhere down to the bed. [m]
+inline double randomHeight(std::mt19937& random, const RandomSand& sand, const Eigen::Vector2d& place,
+                           double radius) {
+  const double surface = surfaceNear(sand, place);
+  switch (random() % 3) {
+    case 0:
+      return surface + uniform(random, -1.0, 1.0) * radius;
+    case 1:
+      return surface - uniform(random, 1.0, 2.0) * radius;
+    default:
+      return surface - uniform(random, 0.0, 1.0) * std::max(surface - bedNear(sand, place), 0.0);
+  }
+}
+
+/// Moves the body and turns it, in the sand or near it, from 0 to `stop` [s]; one body in three spins on the
+/// spot.
 inline void moveThroughSand(std::mt19937& random, const RandomSand& sand, double stop, RandomBody& body) {
   const Grid grid = sand.parameters.grid.grid();
   constexpr int kKeys = 4;
+  const bool spins = random() % 3 == 0;
+  Eigen::Vector2d place = randomPlace(random, grid, 0.0);
+  double height = randomHeight(random, sand, place, body.radius);
   for (int key = 0; key < kKeys; ++key) {
-    const Eigen::Vector2d place = randomPlace(random, grid, 0.0);
-    const double height = surfaceNear(sand, place) + uniform(random, -1.0, 1.0) * body.radius;
     body.motion.push_back({stop * key / (kKeys - 1), poseOf(place, height, randomRotation(random))});
+    if (spins) continue;
+    place = randomPlace(random, grid, 0.0);
+    height = randomHeight(random, sand, place, body.radius);
   }
 }
 

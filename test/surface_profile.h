@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -34,40 +33,6 @@ inline double surfaceAt(const Grid& grid, const Fields& fields, const Eigen::Vec
   const double t = y - j;
   return (1.0 - t) * ((1.0 - s) * surface(i, j) + s * surface(i + 1, j)) +
          t * ((1.0 - s) * surface(i, j + 1) + s * surface(i + 1, j + 1));
-}
-
-/// Slope of the plane that fits best to the surface around a place. [rad]
-inline double planeSlope(const Grid& grid, const Fields& fields, const Eigen::Vector2d& middle,
-                         double radius) {
-  Eigen::Matrix3d normal_equations = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
-  for (int j = 0; j < grid.rows; ++j) {
-    for (int i = 0; i < grid.columns; ++i) {
-      const Eigen::Vector3d row(grid.x(i) - middle.x(), grid.y(j) - middle.y(), 1.0);
-      if (row.head<2>().norm() > radius) continue;
-      normal_equations += row * row.transpose();
-      right_side += row * visibleSurface(fields, grid.index(i, j));
-    }
-  }
-  return std::atan(normal_equations.ldlt().solve(right_side).head<2>().norm());
-}
-
-/// Steepness of a heap's flank, whichever way it falls: of the plane that fits best between 75 % and 25 % of
-/// the heap's height above `base`, as met on the line from its top towards `heading` (a unit vector). [rad]
-inline double steepestFlank(const Grid& grid, const Fields& fields, const Eigen::Vector2d& top,
-                            const Eigen::Vector2d& heading, double base) {
-  const double height = surfaceAt(grid, fields, top) - base;
-  const double stride = 0.25 * static_cast<double>(grid.spacing);
-  const double longest = grid.spacing * (grid.columns + grid.rows);
-  const auto wayDownTo = [&](double share) {
-    double r = 0.0;
-    while (r < longest && surfaceAt(grid, fields, top + r * heading) - base > share * height) r += stride;
-    return r;
-  };
-  const double high = wayDownTo(0.75);
-  const double low = wayDownTo(0.25);
-  const double radius = std::max(0.5 * (low - high), 1.5 * static_cast<double>(grid.spacing));
-  return planeSlope(grid, fields, top + 0.5 * (high + low) * heading, radius);
 }
 
 /// Angle at which a heap of sand falls away from its top towards `heading` (a unit vector): of the line that

@@ -27,17 +27,35 @@ TriangleMesh wheelMesh() {
   return mesh;
 }
 
+/// Far from the surface a distance is only a lower bound, and not the same on both sides.
+DistanceField mirroredAlongY(DistanceField field) {
+  const int across = field.samples[0];
+  const int middle = field.samples[1] / 2;
+  for (int k = 0; k < field.samples[2]; ++k) {
+    for (int j = 0; j < middle; ++j) {
+      const auto row = [&](int number) {
+        return field.distance.begin() + (k * field.samples[1] + number) * across;
+      };
+      std::copy(row(j), row(j) + across, row(field.samples[1] - 1 - j));
+    }
+  }
+  return field;
+}
+
 /// A wheel that travels along x while its rim turns as many times as fast.
-Scene wheelScene(double rim_over_travel, double travel) {
-  Scene scene = levelSand({kLength, kRows * kSpacing}, kSpacing, kSurface);
+Simulator wheelSimulator(double rim_over_travel, double travel) {
+  const Scene scene = levelSand({kLength, kRows * kSpacing}, kSpacing, kSurface);
   const Eigen::Vector3d from(kStartX, kMiddleY, kSurface - kSunk + kRadius);
-  SceneBody wheel;
-  wheel.name = "wheel";
-  wheel.shape = wheelMesh();
-  wheel.motion = spinningMotion(from, from + Eigen::Vector3d(travel, 0.0, 0.0), kDuration,
-                                Eigen::Vector3d::UnitY(), rim_over_travel * kSpeed / kRadius);
-  scene.bodies = {wheel};
-  return scene;
+  Simulator simulator = buildSimulator(scene);
+  const TriangleMesh mesh = wheelMesh();
+  const std::size_t wheel = simulator.addBody(
+      "wheel", std::make_shared<const DistanceField>(
+                   mirroredAlongY(computeDistanceField(mesh, distanceSpacing(mesh, kSpacing)))));
+  const std::vector<PoseKey> motion =
+      spinningMotion(from, from + Eigen::Vector3d(travel, 0.0, 0.0), kDuration, Eigen::Vector3d::UnitY(),
+                     rim_over_travel * kSpeed / kRadius);
+  for (const PoseKey& key : motion) simulator.appendPose(wheel, key.time, key.pose);
+  return simulator;
 }
 
 struct Rut {
@@ -61,7 +79,7 @@ double asymmetry(const Grid& grid, const Fields& fields) {
 }
 
 Rut rutOf(double rim_over_travel) {
-  Simulator simulator = buildSimulator(wheelScene(rim_over_travel, kTravel));
+  Simulator simulator = wheelSimulator(rim_over_travel, kTravel);
   Rut rut{kSurface, 0.0, 0.0, 0.0, 0.0, 0.0};
   rut.most_overlap = runWatchingOverlap(simulator, kDuration);
   const Grid& grid = simulator.grid();
@@ -115,15 +133,16 @@ TEST(Wheel, ThrowsSandBackWhereItSlips) {
 
 /// On the spot, with the top of the wheel going forward.
 TEST(Wheel, ThrowsSandBackWhereItOnlySpins) {
-  Simulator simulator = buildSimulator(wheelScene(4.0, 0.0));
-  const double before = simulator.ledger().now;
+  Simulator simulator = wheelSimulator(4.0, 0.0);
+  const Fields before = simulator.fields();
   const double most_overlap = runWatchingOverlap(simulator, kDuration);
   const Grid& grid = simulator.grid();
   const Fields fields = simulator.fields();
-  const double half_map = kStartX * kRows * kSpacing * kSurface;
-  const double behind = volumeWhere(grid, fields, [](double x, double) { return x < kStartX; }) - half_map;
-  const double ahead =
-      volumeWhere(grid, fields, [](double x, double) { return x > kStartX; }) - (before - half_map);
+  const auto gained = [&](auto&& chosen) {
+    return volumeWhere(grid, fields, chosen) - volumeWhere(grid, before, chosen);
+  };
+  const double behind = gained([](double x, double) { return x < kStartX; });
+  const double ahead = gained([](double x, double) { return x > kStartX; });
   std::printf(
       "sand behind the axle %.2e m^3 more than before, ahead %.2e; overlap at most %.1e of %.1e m^3\n",
       behind, ahead, most_overlap, submerged());
