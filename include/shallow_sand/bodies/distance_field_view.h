@@ -16,9 +16,11 @@ struct DistanceFieldView {
   /// Trilinear interpolation; outside of the sampled box a length of one spacing, which is outside of the
   /// body.
   SHALLOW_SAND_HOST_DEVICE float sample(Vector3 p) const {
-    const float x = (p.x - origin.x) / spacing;
-    const float y = (p.y - origin.y) / spacing;
-    const float z = (p.z - origin.z) / spacing;
+    return sampleAt((p.x - origin.x) / spacing, (p.y - origin.y) / spacing, (p.z - origin.z) / spacing);
+  }
+
+  /// The same for a place that is counted in samples, from the first one on.
+  SHALLOW_SAND_HOST_DEVICE float sampleAt(float x, float y, float z) const {
     if (!(x >= 0.0f && y >= 0.0f && z >= 0.0f && x < static_cast<float>(samples_x - 1) &&
           y < static_cast<float>(samples_y - 1) && z < static_cast<float>(samples_z - 1))) {
       return spacing;

@@ -110,6 +110,23 @@ struct DisplaceSand {
     return (contact.isCovered(at) ? contact.top[at] : bed[at] + ground.depth[at]) < than;
   }
 
+  /// Whether a column has more sand than room.
+  SHALLOW_SAND_HOST_DEVICE bool overflows(int i, int j) const {
+    if (!inside(i, j)) return false;
+    const long long at = index(i, j);
+    return ground.depth[at] > contact.clearance[at] || load.depth[at] > contact.headroom[at] ||
+           contact.swept[at] != 0;
+  }
+  SHALLOW_SAND_HOST_DEVICE bool pushes(int i, int j) const {
+    return inside(i, j) && contact.length[index(i, j)] > 0.0f;
+  }
+  /// Whether nothing comes to a column or goes from it.
+  SHALLOW_SAND_HOST_DEVICE bool isLeftAlone(int i, int j) const {
+    const bool overflow = overflows(i, j) || overflows(i - 1, j) || overflows(i + 1, j) ||
+                          overflows(i, j - 1) || overflows(i, j + 1);
+    return !overflow && !(pushes(i - 1, j) || pushes(i + 1, j) || pushes(i, j - 1) || pushes(i, j + 1));
+  }
+
   SHALLOW_SAND_HOST_DEVICE Outflow ofGround(int i, int j) const {
     Outflow out{};
     if (!inside(i, j)) return out;
@@ -182,16 +199,13 @@ struct DisplaceSand {
 
   SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {
     const long long at = index(i, j);
-    const Outflow ground_out = ofGround(i, j);
-    const Outflow load_out = ofLoad(i, j);
-    Sand below = kept(ground.get(at), ground_out, contact.clearance[at]);
-    Sand above = kept(load.get(at), load_out, contact.swept[at] != 0 ? 0.0f : contact.headroom[at]);
-    add(below, gathered(ofGround(i - 1, j), ofGround(i + 1, j), ofGround(i, j - 1), ofGround(i, j + 1)));
+    Sand below = ground.get(at);
+    Sand above = load.get(at);
     const bool covered = contact.isCovered(at);
-    add(covered ? above : below,
-        gathered(ofLoad(i - 1, j), ofLoad(i + 1, j), ofLoad(i, j - 1), ofLoad(i, j + 1)));
+    const bool left_alone = isLeftAlone(i, j);
+    if (!left_alone) exchange(i, j, below, above);
     const bool closed = covered && isFull(below.h, contact.clearance[at], spacing);
-    if (below.h > 0.0f && !closed) {
+    if (!left_alone && below.h > 0.0f && !closed) {
       // As Eq. 23 has it, hu takes the difference along x only, hv the one along y only.
       below.hu =
           pushedAside(below.hu, below.h, verticalVelocity(i + 1, j) - verticalVelocity(i - 1, j), spacing);
@@ -207,6 +221,15 @@ struct DisplaceSand {
   }
 
  private:
+  SHALLOW_SAND_HOST_DEVICE void exchange(int i, int j, Sand& below, Sand& above) const {
+    const long long at = index(i, j);
+    below = kept(below, ofGround(i, j), contact.clearance[at]);
+    above = kept(above, ofLoad(i, j), contact.swept[at] != 0 ? 0.0f : contact.headroom[at]);
+    add(below, gathered(ofGround(i - 1, j), ofGround(i + 1, j), ofGround(i, j - 1), ofGround(i, j + 1)));
+    add(contact.isCovered(at) ? above : below,
+        gathered(ofLoad(i - 1, j), ofLoad(i + 1, j), ofLoad(i, j - 1), ofLoad(i, j + 1)));
+  }
+
   SHALLOW_SAND_HOST_DEVICE static void add(Sand& sand, const Sand& more) {
     sand = {sand.h + more.h, sand.hu + more.hu, sand.hv + more.hv};
   }

@@ -25,9 +25,28 @@ struct FlowLoads {
     const long long at = step.index(i, j);
     return contact.isCovered(at) && columns.closed[at] == 0;
   }
+  /// Whether there is a load that flows, or room for one beside sand that stands higher.
+  SHALLOW_SAND_HOST_DEVICE bool mayFlow(int i, int j, float highest) const {
+    if (!hangs(i, j)) return false;
+    const long long at = step.index(i, j);
+    return columns.hidden.depth[at] > 0.0f || highest > contact.top[at];
+  }
+  SHALLOW_SAND_HOST_DEVICE float surface(int i, int j) const {
+    if (!onGrid(i, j)) return -1e30f;
+    const long long at = step.index(i, j);
+    const float visible_surface = columns.visible_bed[at] + columns.visible.depth[at];
+    return hangs(i, j) ? maximum(visible_surface, contact.top[at] + columns.hidden.depth[at])
+                       : visible_surface;
+  }
   /// Whether anything may flow to or from a hanging load here.
   SHALLOW_SAND_HOST_DEVICE bool isInvolved(int i, int j) const {
-    return hangs(i, j) || hangs(i - 1, j) || hangs(i + 1, j) || hangs(i, j - 1) || hangs(i, j + 1);
+    if (!(hangs(i, j) || hangs(i - 1, j) || hangs(i + 1, j) || hangs(i, j - 1) || hangs(i, j + 1)))
+      return false;
+    const float around =
+        maximum(maximum(surface(i - 1, j), surface(i + 1, j)), maximum(surface(i, j - 1), surface(i, j + 1)));
+    const float own = surface(i, j);
+    return mayFlow(i, j, around) || mayFlow(i - 1, j, own) || mayFlow(i + 1, j, own) ||
+           mayFlow(i, j - 1, own) || mayFlow(i, j + 1, own);
   }
 
   SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {

@@ -37,19 +37,63 @@ struct SolidIntervals {
   }
 };
 
-/// Marches up a vertical ray through one body, from `from` to its highest point, and adds the solid intervals
-/// (section 5, steps 1–3: the body's signed distance field is sampled along the ray; where its sign changes,
-/// the crossing is found by linear interpolation). [m]
+/// A vertical ray in the frame of a body: where it is at a height above the body's origin, in samples of the
+/// body's distance field.
+struct RayInField {
+  Vector3 base;
+  Vector3 rise;  ///< [1/m]
+
+  SHALLOW_SAND_HOST_DEVICE RayInField(const BodyView& body, float x, float y) {
+    const Vector3 level = body.toBody({x, y, body.position.z});
+    const float per_spacing = 1.0f / body.field.spacing;
+    base = {(level.x - body.field.origin.x) * per_spacing, (level.y - body.field.origin.y) * per_spacing,
+            (level.z - body.field.origin.z) * per_spacing};
+    rise = {body.axis_z.x * per_spacing, body.axis_z.y * per_spacing, body.axis_z.z * per_spacing};
+  }
+
+  /// Distance to the body's surface at a height. [m]
+  SHALLOW_SAND_HOST_DEVICE float sample(const DistanceFieldView& field, float height) const {
+    return field.sampleAt(base.x + height * rise.x, base.y + height * rise.y, base.z + height * rise.z);
+  }
+
+  /// Keeps of the heights from `low` to `high` those at which the ray is within the field's box.
+  SHALLOW_SAND_HOST_DEVICE void clip(const DistanceFieldView& field, float& low, float& high) const {
+    clip(base.x, rise.x, field.samples_x, low, high);
+    clip(base.y, rise.y, field.samples_y, low, high);
+    clip(base.z, rise.z, field.samples_z, low, high);
+  }
+
+ private:
+  SHALLOW_SAND_HOST_DEVICE static void clip(float start, float rise, int samples, float& low, float& high) {
+    const float last = static_cast<float>(samples - 1);
+    if (fabsf(rise) < 1e-6f) {
+      if (start < 0.0f || start > last) high = low;
+      return;
+    }
+    const float one = -start / rise;
+    const float other = (last - start) / rise;
+    low = maximum(low, minimum(one, other));
+    high = minimum(high, maximum(one, other));
+  }
+};
+
+/// Marches up a vertical ray through one body, from `from` on, and adds the solid intervals (section 5, steps
+/// 1–3: the body's signed distance field is sampled along the ray; where its sign changes, the crossing is
+/// found by linear interpolation). [m]
 SHALLOW_SAND_HOST_DEVICE inline void castRay(const BodyView& body, int number, float x, float y, float from,
                                              SolidIntervals& solids) {
+  const RayInField ray(body, x, y);
+  const float origin = body.position.z;
   const float shortest = body.field.spacing;
-  const float to = body.high.z;
-  float z = from;
-  float distance = body.field.sample(body.toBody({x, y, z}));
-  float bottom = from;
+  float z = from - origin;
+  float to = body.high.z - origin;
+  ray.clip(body.field, z, to);
+  if (!(z < to)) return;
+  float distance = ray.sample(body.field, z);
+  float bottom = z;
   while (z < to) {
     const float next_z = minimum(z + maximum(shortest, fabsf(distance)), to);
-    const float next = body.field.sample(body.toBody({x, y, next_z}));
+    const float next = ray.sample(body.field, next_z);
     const bool inside = distance < 0.0f;
     const bool next_inside = next < 0.0f;
     if (inside != next_inside) {
@@ -57,13 +101,13 @@ SHALLOW_SAND_HOST_DEVICE inline void castRay(const BodyView& body, int number, f
       if (next_inside) {
         bottom = crossing;
       } else {
-        solids.insert({bottom, crossing, number});
+        solids.insert({origin + bottom, origin + crossing, number});
       }
     }
     z = next_z;
     distance = next;
   }
-  if (distance < 0.0f) solids.insert({bottom, to, number});
+  if (distance < 0.0f) solids.insert({origin + bottom, origin + to, number});
 }
 
 /// The solid parts of the column of a cell, above a bed of elevation `b` [m].
