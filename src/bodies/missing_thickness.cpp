@@ -12,6 +12,7 @@ constexpr double kOffset = 1e-4;
 /// Tilted rays find the solid below an edge, where the one along the normal runs along a face. Five of them,
 /// for one to lie between the faces of a right-angled corner.
 constexpr int kTiltedRays = 5;
+constexpr double kSlant = 1e-4;  ///< keeps rays off the edges that lie opposite to the point
 constexpr double kTiltCosine = 0.8;
 constexpr double kTiltSine = 0.6;
 
@@ -48,10 +49,11 @@ double thickness(const TriangleSurface& surface, const Eigen::Vector3d& foot, co
   const double offset = outside ? -kOffset * least : kOffset * least;
   double largest = 0.0;
   for (int ray = 0; ray <= kTiltedRays && largest < least; ++ray) {
-    const double turn = 2.0 * kPi * ray / kTiltedRays;
+    const double turn = 2.0 * kPi * (ray + 0.1) / kTiltedRays;
     const double cosine = ray == 0 ? 1.0 : kTiltCosine;
     const Eigen::Vector3d direction =
-        ray == 0 ? into : kTiltCosine * into + kTiltSine * (std::cos(turn) * across + std::sin(turn) * along);
+        ray == 0 ? Eigen::Vector3d((into + kSlant * (across + 0.3 * along)).normalized())
+                 : kTiltCosine * into + kTiltSine * (std::cos(turn) * across + std::sin(turn) * along);
     const double length = (1.0 + 4.0 * kOffset) * least / cosine;
     const double inside = solidAlong(surface, foot + offset * direction, direction, length, winding);
     largest = std::max(largest, cosine * inside);

@@ -19,9 +19,6 @@ constexpr double kPi = 3.14159265358979323846;
 /// on a sphere, 0.04 on a bowl, 0.1 on four spheres in one another, 0.006 on loose triangles; three radii
 /// halve that and cost more.
 constexpr double kFarInRadii = 2.0;
-/// A node is far from a box from this many half diagonals on, besides: interpolation between the corners then
-/// errs by less than a tenth of what the node adds.
-constexpr double kFarInBoxes = 3.0;
 constexpr double kTie = 1e-12;  ///< relative; squared distances that differ by less are the same
 
 using Model = fcl::BVHModel<fcl::AABB<double>>;
@@ -46,16 +43,44 @@ struct Moments {
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 
-/// Of one triangle: Van Oosterom and Strackee 1983. Positive when `point` is behind it.
-double solidAngleOf(const Corners& triangle, const Eigen::Vector3d& point) {
+/// A sum of angles as the angle of a product of complex numbers, which is quicker than an arc tangent each.
+class AngleSum {
+ public:
+  /// Adds the angle of a + ib, from −π to π.
+  void add(double a, double b) {
+    const double product_real = real_ * a - imaginary_ * b;
+    const double product_imaginary = real_ * b + imaginary_ * a;
+    // Two angles of one half plane whose sum lies in the other one went past π.
+    if (imaginary_ >= 0.0 && b >= 0.0 && product_imaginary < 0.0) ++turns_;
+    if (imaginary_ < 0.0 && b < 0.0 && product_imaginary >= 0.0) --turns_;
+    const double size = std::abs(product_real) + std::abs(product_imaginary);
+    if (size > 1e-100 && size < 1e100) {
+      real_ = product_real;
+      imaginary_ = product_imaginary;
+    } else if (size > 0.0) {
+      real_ = product_real / size;
+      imaginary_ = product_imaginary / size;
+    }
+  }
+  double sum() const { return std::atan2(imaginary_, real_) + 2.0 * kPi * turns_; }
+
+ private:
+  double real_ = 1.0;
+  double imaginary_ = 0.0;
+  int turns_ = 0;
+};
+
+/// Adds half the solid angle of a triangle: Van Oosterom and Strackee 1983. Positive when `point` is behind
+/// it.
+void addSolidAngle(const Corners& triangle, const Eigen::Vector3d& point, AngleSum& halves) {
   const Eigen::Vector3d a = triangle[0] - point;
   const Eigen::Vector3d b = triangle[1] - point;
   const Eigen::Vector3d c = triangle[2] - point;
   const double a_length = a.norm();
   const double b_length = b.norm();
   const double c_length = c.norm();
-  return 2.0 * std::atan2(a.dot(b.cross(c)), a_length * b_length * c_length + a.dot(b) * c_length +
-                                                 b.dot(c) * a_length + c.dot(a) * b_length);
+  halves.add(a_length * b_length * c_length + a.dot(b) * c_length + b.dot(c) * a_length + c.dot(a) * b_length,
+             a.dot(b.cross(c)));
 }
 
 bool hasArea(const TriangleMesh& mesh, const std::array<int, 3>& triangle) {
@@ -93,26 +118,6 @@ double lengthOfOpenEdges(const Model& model) {
   return length;
 }
 
-/// Each coordinate of `point` as a share of the box's extent.
-Eigen::Array3d shareWithin(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& point) {
-  const Eigen::Array3d extent = box.sizes().array();
-  return (extent > 0.0).select((point - box.min()).array() / extent.max(1e-300), 0.0);
-}
-
-double interpolated(const std::array<double, 8>& corners, const Eigen::Array3d& share) {
-  double sum = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    double weight = 1.0;
-    for (int axis = 0; axis < 3; ++axis) weight *= corner >> axis & 1 ? share[axis] : 1.0 - share[axis];
-    sum += weight * corners[static_cast<std::size_t>(corner)];
-  }
-  return sum;
-}
-
-Eigen::Vector3d cornerOf(const Eigen::AlignedBox3d& box, int corner) {
-  return box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
-}
-
 }  // namespace
 
 /// The mesh in FCL's bounding volume hierarchy. fcl::distance itself is of no use here: for a point it goes
@@ -140,7 +145,8 @@ struct TriangleSurface::Tree {
   };
   void nearest(int node, Search& search) const;
   void compare(int triangle, Search& search) const;
-  double solidAngle(int node, const Eigen::Vector3d& point) const;
+  /// Of all triangles below `node`: of near ones into `halves`, of far ones as the result.
+  double solidAngle(int node, const Eigen::Vector3d& point, AngleSum& halves) const;
 
   struct Ray {
     Eigen::Vector3d from;
@@ -186,6 +192,7 @@ void TriangleSurface::Tree::gatherMoments(int node) {
     sum.area_vector = (b - a).cross(c - a) / 2.0;
     sum.area = sum.area_vector.norm();
     sum.centre = (a + b + c) / 3.0;
+    sum.radius = std::max({(a - sum.centre).norm(), (b - sum.centre).norm(), (c - sum.centre).norm()});
   } else {
     gatherMoments(tree.leftChild());
     gatherMoments(tree.rightChild());
@@ -196,10 +203,11 @@ void TriangleSurface::Tree::gatherMoments(int node) {
     sum.area_vector = left.area_vector + right.area_vector;
     sum.first = left.first + (left.centre - sum.centre) * left.area_vector.transpose() + right.first +
                 (right.centre - sum.centre) * right.area_vector.transpose();
+    const Eigen::Vector3d to_far_corner =
+        (tree.bv.max_ - sum.centre).cwiseAbs().cwiseMax((tree.bv.min_ - sum.centre).cwiseAbs());
+    sum.radius = std::min(to_far_corner.norm(), std::max(left.radius + (left.centre - sum.centre).norm(),
+                                                         right.radius + (right.centre - sum.centre).norm()));
   }
-  const Eigen::Vector3d to_far_corner =
-      (tree.bv.max_ - sum.centre).cwiseAbs().cwiseMax((tree.bv.min_ - sum.centre).cwiseAbs());
-  sum.radius = to_far_corner.norm();
 }
 
 void TriangleSurface::Tree::compare(int triangle, Search& search) const {
@@ -232,12 +240,15 @@ void TriangleSurface::Tree::nearest(int node, Search& search) const {
   if (to_far <= search.squared * (1.0 + kTie)) nearest(far, search);
 }
 
-double TriangleSurface::Tree::solidAngle(int node, const Eigen::Vector3d& point) const {
-  const auto& tree = model.getBV(node);
-  if (tree.isLeaf()) return solidAngleOf(corners(tree.primitiveId()), point);
+double TriangleSurface::Tree::solidAngle(int node, const Eigen::Vector3d& point, AngleSum& halves) const {
   const double far = kFarInRadii * at(node).radius;
+  const auto& tree = model.getBV(node);
+  if (tree.isLeaf()) {
+    addSolidAngle(corners(tree.primitiveId()), point, halves);
+    return 0.0;
+  }
   if ((at(node).centre - point).squaredNorm() > far * far) return at(node).solidAngle(point);
-  return solidAngle(tree.leftChild(), point) + solidAngle(tree.rightChild(), point);
+  return solidAngle(tree.leftChild(), point, halves) + solidAngle(tree.rightChild(), point, halves);
 }
 
 bool TriangleSurface::Tree::meets(const Ray& ray, const fcl::AABB<double>& box) const {
@@ -306,7 +317,9 @@ const Eigen::Vector3d& TriangleSurface::normal(int triangle) const {
 }
 
 double TriangleSurface::windingNumber(const Eigen::Vector3d& point) const {
-  return tree_->solidAngle(0, point) / (4.0 * kPi);
+  AngleSum halves;
+  const double far = tree_->solidAngle(0, point, halves);
+  return (far + 2.0 * halves.sum()) / (4.0 * kPi);
 }
 
 double TriangleSurface::windingGradient(double clearance) const {
@@ -315,61 +328,13 @@ double TriangleSurface::windingGradient(double clearance) const {
 
 double TriangleSurface::openEdges() const { return tree_->open_edges; }
 
-TriangleSurface::WindingWithin TriangleSurface::windingWithin(const Eigen::AlignedBox3d& box) const {
-  return windingWithin(box, {box, {}, {0}});
-}
-
-TriangleSurface::WindingWithin TriangleSurface::windingWithin(const Eigen::AlignedBox3d& box,
-                                                              const WindingWithin& outer) const {
-  WindingWithin within;
-  within.box = box;
-  for (int corner = 0; corner < 8; ++corner) {
-    within.far[static_cast<std::size_t>(corner)] =
-        interpolated(outer.far, shareWithin(outer.box, cornerOf(box, corner)));
-  }
-  const double half_diagonal = box.sizes().norm() / 2.0;
-  std::vector<int> open = outer.near;
-  while (!open.empty()) {
-    const int node = open.back();
-    open.pop_back();
-    const Moments& moments = tree_->at(node);
-    const double far = kFarInRadii * moments.radius + kFarInBoxes * half_diagonal;
-    if ((moments.centre - box.center()).squaredNorm() > far * far) {
-      for (int corner = 0; corner < 8; ++corner) {
-        within.far[static_cast<std::size_t>(corner)] +=
-            moments.solidAngle(cornerOf(box, corner)) / (4.0 * kPi);
-      }
-    } else if (tree_->model.getBV(node).isLeaf() || moments.radius < half_diagonal) {
-      // A node smaller than the box is left whole for the parts of the box to take apart.
-      within.near.push_back(node);
-    } else {
-      open.push_back(tree_->model.getBV(node).leftChild());
-      open.push_back(tree_->model.getBV(node).rightChild());
-    }
-  }
-  return within;
-}
-
-double TriangleSurface::windingNumber(const WindingWithin& within, const Eigen::Vector3d& point) const {
-  double sum = 0.0;
-  for (const int node : within.near) sum += tree_->solidAngle(node, point);
-  return interpolated(within.far, shareWithin(within.box, point)) + sum / (4.0 * kPi);
-}
-
 std::vector<TriangleSurface::Crossing> TriangleSurface::crossings(const Eigen::Vector3d& from,
                                                                   const Eigen::Vector3d& direction,
                                                                   double length) const {
   std::vector<Crossing> found;
   tree_->cross(0, {from, direction, length}, found);
-  std::sort(found.begin(), found.end(), [](const Crossing& a, const Crossing& b) {
-    return std::make_pair(a.along, a.change) < std::make_pair(b.along, b.change);
-  });
-  // A ray through an edge meets both of its triangles, but changes sides once.
-  const double same = 1e-9 * length;
-  const auto end = std::unique(found.begin(), found.end(), [same](const Crossing& a, const Crossing& b) {
-    return b.along - a.along < same && a.change == b.change;
-  });
-  found.erase(end, found.end());
+  std::sort(found.begin(), found.end(),
+            [](const Crossing& a, const Crossing& b) { return a.along < b.along; });
   return found;
 }
 

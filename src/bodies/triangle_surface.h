@@ -40,24 +40,13 @@ class TriangleSurface {
   /// Length of all edges that no other triangle shares. [m]
   double openEdges() const;
 
-  /// The winding number within a box: what is far away as numbers at the box's corners, to be interpolated;
-  /// the rest as nodes of the tree, to be summed at every point.
-  struct WindingWithin {
-    Eigen::AlignedBox3d box;
-    std::array<double, 8> far{};
-    std::vector<int> near;
-  };
-  WindingWithin windingWithin(const Eigen::AlignedBox3d& box) const;
-  /// The same for a box that lies in that of `outer`.
-  WindingWithin windingWithin(const Eigen::AlignedBox3d& box, const WindingWithin& outer) const;
-  double windingNumber(const WindingWithin& within, const Eigen::Vector3d& point) const;
-
   /// Where a ray goes through a triangle.
   struct Crossing {
     double along;  ///< [m]
     int change;    ///< of the winding number: 1 where the ray comes from the triangle's outer side, else -1
   };
-  /// Of a ray of this length, in order. `direction` is of length 1.
+  /// Of a ray of this length, in order. `direction` is of length 1. A ray right through an edge meets both of
+  /// its triangles: choose one that does not.
   std::vector<Crossing> crossings(const Eigen::Vector3d& from, const Eigen::Vector3d& direction,
                                   double length) const;
 
