@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <optional>
 #include <string>
 
 #include "missing_thickness.h"
@@ -24,13 +23,8 @@ constexpr int kBlockSize = 16;       ///< samples along the edge of a block that
 constexpr double kMostSamples = 1 << 27;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kProbes = 12;     ///< along each axis, of the winding number
-constexpr int kNeighbours = 4;  ///< samples along the edge of a block that share a reference
 constexpr double kDeep = 0.5;   ///< of the way to the surface
 constexpr double kDoubt = 0.2;  ///< a winding number that is farther from a whole one is in doubt
-
-/// Every other corner of a cube, moved a little to keep the ways between them and samples off edges.
-const std::array<Eigen::Vector3d, 4> kTetrahedron{
-    {{0.93, 0.96, 0.99}, {0.95, -0.92, -0.97}, {-0.98, 0.94, -0.91}, {-0.96, -0.99, 0.92}}};
 
 bool isDoubtful(double winding) { return std::abs(winding - std::round(winding)) > kDoubt; }
 
@@ -99,7 +93,7 @@ class Sampler {
         middle_(field.origin + field.spacing * middle_sample_.cast<double>().matrix()),
         field_(field) {}
 
-  void fill(const Block& block) const { fill(block, kInfinity, {false, 0.0}, {}); }
+  void fill(const Block& block) const { fill(block, kInfinity, {false, 0.0}); }
   /// Of the samples next to the surface, the share at which it was moved.
   double thickened() const {
     return near_ > 0 ? static_cast<double>(moved_) / static_cast<double>(near_) : 0.0;
@@ -113,80 +107,37 @@ class Sampler {
   };
   static bool isInside(double winding) { return std::abs(winding) > 0.5; }
 
-  /// A place off all edges, most likely, and the winding number there.
-  struct Reference {
-    Eigen::Vector3d point;
-    double winding;
-  };
-
   /// `bound`: a length known to be no shorter than the distance at the block's middle [m].
-  void fill(const Block& block, double bound, Side side, std::optional<Reference> reference) const {
+  void fill(const Block& block, double bound, Side side) const {
     const Eigen::Vector3d middle = position(block.middle());
     const TriangleSurface::Nearest nearest = surface_.nearest(middle, bound);
     if (block.single()) {
-      storeSample(block, middle, nearest, side.known ? side.winding : windingNumber(middle, reference));
+      storeSample(block, middle, nearest, side.known ? side.winding : surface_.windingNumber(middle));
       return;
     }
     const double half_diagonal = field_.spacing * block.halfDiagonal().norm();
-    if (!side.known) side = sideOf(middle, half_diagonal, nearest.distance, reference);
+    if (!side.known) side = sideOf(middle, half_diagonal, nearest.distance);
     if (nearest.distance - half_diagonal >= reach_) {
-      storeBound(block, middle, nearest.distance, side, reference);
+      storeBound(block, middle, nearest.distance, side);
       return;
-    }
-    if (!side.known && !reference && block.size.maxCoeff() <= kNeighbours) {
-      reference = referenceIn(block);
     }
     for (const Block& part : cut(block)) {
       // The small excess keeps rounding from cutting off the true distance.
       const double way = (position(part.middle()) - middle).norm();
-      fill(part, (nearest.distance + way) * (1.0 + 1e-9), side, reference);
+      fill(part, (nearest.distance + way) * (1.0 + 1e-9), side);
     }
-  }
-
-  /// Nothing where the block's corners tell that open edges near by change the number, too.
-  std::optional<Reference> referenceIn(const Block& block) const {
-    const Eigen::Vector3d middle = position(block.middle());
-    const Eigen::Vector3d to_corner = 0.97 * field_.spacing * block.halfDiagonal();
-    std::optional<Reference> reference;
-    for (const Eigen::Vector3d& corner : kTetrahedron) {
-      const Eigen::Vector3d point = middle + to_corner.cwiseProduct(corner);
-      const double winding = surface_.windingNumber(point);
-      if (!reference) {
-        if (isDoubtful(winding)) return std::nullopt;
-        reference = Reference{point, winding};
-      } else if (std::abs(winding - following(*reference, point)) > kDoubt) {
-        return std::nullopt;
-      }
-    }
-    return reference;
-  }
-
-  /// The winding number that follows from the triangles between.
-  double following(const Reference& reference, const Eigen::Vector3d& point) const {
-    const Eigen::Vector3d way = point - reference.point;
-    double winding = reference.winding;
-    for (const auto& crossing : surface_.crossings(reference.point, way.normalized(), way.norm())) {
-      winding += crossing.change;
-    }
-    return winding;
-  }
-
-  /// Far quicker from a place near by than as the sum over the whole surface.
-  double windingNumber(const Eigen::Vector3d& point, const std::optional<Reference>& reference) const {
-    return reference ? following(*reference, point) : surface_.windingNumber(point);
   }
 
   /// Of everything within `radius` of `middle`, if one winding number can tell. A closed mesh has one off its
   /// surface. That of an open one changes, but it is a harmonic function there: it does not come from near a
   /// whole number to ½ within half the way to the surface, unless it is far from whole numbers beyond.
-  Side sideOf(const Eigen::Vector3d& middle, double radius, double distance,
-              const std::optional<Reference>& reference) const {
+  Side sideOf(const Eigen::Vector3d& middle, double radius, double distance) const {
     const double clearance = distance - radius;
     if (clearance <= 0.0) return {false, 0.0};
     const double change = kWindingError + radius * surface_.windingGradient(clearance);
     const bool deep = radius <= kDeep * distance;
     if (change >= 0.5 && !deep) return {false, 0.0};
-    const double winding = windingNumber(middle, reference);
+    const double winding = surface_.windingNumber(middle);
     const double off_half = std::abs(std::abs(winding) - 0.5);
     return {off_half >= change || (deep && off_half >= 0.5 - kDoubt), winding};
   }
@@ -208,15 +159,15 @@ class Sampler {
   }
 
   /// Nowhere does the distance change faster than the position does.
-  void storeBound(const Block& block, const Eigen::Vector3d& middle, double distance, const Side& side,
-                  const std::optional<Reference>& reference) const {
+  void storeBound(const Block& block, const Eigen::Vector3d& middle, double distance,
+                  const Side& side) const {
     const Eigen::Array3i end = block.first + block.size;
     for (int k = block.first.z(); k < end.z(); ++k) {
       for (int j = block.first.y(); j < end.y(); ++j) {
         for (int i = block.first.x(); i < end.x(); ++i) {
           const Eigen::Vector3d point = position(Eigen::Vector3d(i, j, k));
           const double length = distance - (point - middle).norm();
-          const bool inside = isInside(side.known ? side.winding : windingNumber(point, reference));
+          const bool inside = isInside(side.known ? side.winding : surface_.windingNumber(point));
           at(i, j, k) = static_cast<float>(inside ? -length : length - least_thickness_ / 2.0);
         }
       }
