@@ -5,8 +5,10 @@
 #include <geometric_shapes/mesh_operations.h>
 #include <geometric_shapes/shapes.h>
 
+#include <array>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "shallow_sand/bodies/body_geometry.h"
 #include "shallow_sand/core/parameters.h"
@@ -29,10 +31,19 @@ TriangleMesh convexHull(const EigenSTL::vector_Vector3d& corners) {
   const bodies::ConvexMesh hull(source.get());
   TriangleMesh mesh;
   mesh.vertices.assign(hull.getVertices().begin(), hull.getVertices().end());
+  Eigen::Vector3d inside = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& vertex : mesh.vertices)
+    inside += vertex / static_cast<double>(mesh.vertices.size());
   const std::vector<unsigned int>& indices = hull.getTriangles();
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-    mesh.triangles.push_back(
-        {static_cast<int>(indices[i]), static_cast<int>(indices[i + 1]), static_cast<int>(indices[i + 2])});
+    const Eigen::Vector3d& a = mesh.vertices.at(indices[i]);
+    const Eigen::Vector3d& b = mesh.vertices.at(indices[i + 1]);
+    const Eigen::Vector3d& c = mesh.vertices.at(indices[i + 2]);
+    std::array<int, 3> triangle{static_cast<int>(indices[i]), static_cast<int>(indices[i + 1]),
+                                static_cast<int>(indices[i + 2])};
+    // They come in either order.
+    if ((b - a).cross(c - a).dot(a - inside) < 0.0) std::swap(triangle[1], triangle[2]);
+    mesh.triangles.push_back(triangle);
   }
   if (mesh.triangles.empty()) {
     throw InvalidParameter("mesh", "a flat mesh or a line, which has no convex hull",
