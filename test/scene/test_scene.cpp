@@ -185,7 +185,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"backend: cpu", "backend: tpu", "27: backend: tpu;", "auto, cpu or cuda"}));
 
 INSTANTIATE_TEST_SUITE_P(Meshes, SceneMistakes,
-                         ::testing::Values(Mistake{"{sphere: 0.2}", "{mesh: no_such.stl}",
+                         ::testing::Values(Mistake{"{sphere: 0.2}", "{mesh: /no_such.stl}",
                                                    "23: bodies[2].shape.mesh: ", "a readable file"},
                                            Mistake{"{sphere: 0.2}", "{mesh: \"http://host/a.stl\"}",
                                                    "23: bodies[2].shape.mesh: ", "package://"},
