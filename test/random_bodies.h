@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "random_fields.h"
-#include "shallow_sand/bodies/distance_field.h"
+#include "shallow_sand/bodies/body_geometry.h"
 #include "shallow_sand/scene/simulation.h"
 
 namespace shallow_sand {

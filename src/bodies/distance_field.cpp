@@ -1,206 +1,32 @@
 #include "shallow_sand/bodies/distance_field.h"
 
-#include <fcl/geometry/bvh/BVH_model.h>
-#include <fcl/math/bv/AABB.h>
-#include <fcl/math/detail/project.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <map>
 #include <string>
 
+#include "missing_thickness.h"
 #include "shallow_sand/core/parameters.h"
+#include "triangle_surface.h"
 
 namespace shallow_sand {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr int kMargin = 2;            ///< samples around the mesh
-constexpr double kExactReach = 2.0;   ///< distances up to this many spacings are exact
-constexpr int kBlockSize = 16;        ///< samples along the edge of a block that one thread fills
-constexpr double kSeriesError = 0.1;  ///< of a winding number; see Surface::solidAngle
+constexpr int kMargin = 2;           ///< samples around the solid
+constexpr double kExactReach = 2.0;  ///< distances up to this many spacings are exact
+constexpr int kBlockSize = 16;       ///< samples along the edge of a block that one thread fills
 constexpr double kMostSamples = 1 << 27;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kProbes = 12;     ///< along each axis, of the winding number
+constexpr double kDeep = 0.5;   ///< of the way to the surface
+constexpr double kDoubt = 0.2;  ///< a winding number that is farther from a whole one is in doubt
 
-using Model = fcl::BVHModel<fcl::AABB<double>>;
-
-/// The mesh in FCL's bounding volume hierarchy. fcl::distance itself is of no use here: for a point it goes
-/// through Sphere and Triangle, which leave the distance unset where they touch (FCL 0.7,
-/// sphere_triangle-inl.h). So this walks FCL's tree and projects on triangles with FCL's Project.
-class Surface {
- public:
-  explicit Surface(const TriangleMesh& mesh);
-
-  /// Distance to the nearest triangle, or `bound` if there is none nearer. [m]
-  double distance(const Eigen::Vector3d& point, double bound) const;
-  /// How often the surface goes round `point`, after Jacobson, Kavan and Sorkine-Hornung 2013.
-  double windingNumber(const Eigen::Vector3d& point) const { return solidAngle(0, point) / (4.0 * kPi); }
-  /// The winding number changes no faster than this where the surface is no nearer than `clearance`. [1/m]
-  /// A surface is seen under a solid angle whose gradient is an integral along its open edges, as a current's
-  /// magnetic field is (Biot and Savart): none for a closed mesh, whose winding number is constant off its
-  /// surface.
-  double windingGradient(double clearance) const { return open_edges_ / (4.0 * kPi * clearance * clearance); }
-
- private:
-  /// What a far point sees of all triangles below a node: Barill, Dickson, Schmidt, Levin and Jacobson 2018,
-  /// "Fast winding numbers for soups and clouds", with their first two terms.
-  struct Moments {
-    double area = 0.0;
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();       ///< weighted by area
-    Eigen::Vector3d area_vector = Eigen::Vector3d::Zero();  ///< Σ area·normal
-    Eigen::Matrix3d first = Eigen::Matrix3d::Zero();  ///< Σ (triangle's centre − centre)·(area·normal)ᵀ
-    double radius = 0.0;                              ///< no part of the surface is farther from `centre`
-
-    double solidAngle(const Eigen::Vector3d& point) const;
-  };
-  void gatherMoments(int node);
-  void nearest(int node, const Eigen::Vector3d& point, double& squared) const;
-  double solidAngle(int node, const Eigen::Vector3d& point) const;
-  double squaredDistanceToBox(int node, const Eigen::Vector3d& point) const;
-  std::array<Eigen::Vector3d, 3> corners(int node) const;
-
-  Model model_;
-  std::vector<Moments> moments_;  ///< one a node
-  double open_edges_ = 0.0;       ///< their length [m]
-};
-
-bool hasArea(const TriangleMesh& mesh, const std::array<int, 3>& triangle) {
-  const Eigen::Vector3d& a = mesh.vertices[static_cast<std::size_t>(triangle[0])];
-  const Eigen::Vector3d u = mesh.vertices[static_cast<std::size_t>(triangle[1])] - a;
-  const Eigen::Vector3d v = mesh.vertices[static_cast<std::size_t>(triangle[2])] - a;
-  // Below this its normal is noise, and so would be a distance to its plane; its edges belong to its
-  // neighbours.
-  return u.cross(v).norm() > 1e-10 * std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()});
-}
-
-/// Edges at the same place cancel when they run in opposite directions.
-double lengthOfOpenEdges(const Model& model) {
-  std::map<std::array<double, 6>, int> crossings;
-  for (int i = 0; i < model.num_tris; ++i) {
-    for (int corner = 0; corner < 3; ++corner) {
-      const Eigen::Vector3d& from = model.vertices[model.tri_indices[i][corner]];
-      const Eigen::Vector3d& to = model.vertices[model.tri_indices[i][(corner + 1) % 3]];
-      const std::array<double, 6> there{from.x(), from.y(), from.z(), to.x(), to.y(), to.z()};
-      const std::array<double, 6> back{to.x(), to.y(), to.z(), from.x(), from.y(), from.z()};
-      crossings[std::min(there, back)] += there < back ? 1 : -1;
-    }
-  }
-  double length = 0.0;
-  for (const auto& [edge, count] : crossings) {
-    length +=
-        std::abs(count) * Eigen::Vector3d(edge[3] - edge[0], edge[4] - edge[1], edge[5] - edge[2]).norm();
-  }
-  return length;
-}
-
-Surface::Surface(const TriangleMesh& mesh) {
-  model_.beginModel(static_cast<int>(mesh.triangles.size()), 3 * static_cast<int>(mesh.triangles.size()));
-  for (const std::array<int, 3>& triangle : mesh.triangles) {
-    if (!hasArea(mesh, triangle)) continue;
-    model_.addTriangle(mesh.vertices[static_cast<std::size_t>(triangle[0])],
-                       mesh.vertices[static_cast<std::size_t>(triangle[1])],
-                       mesh.vertices[static_cast<std::size_t>(triangle[2])]);
-  }
-  if (model_.num_tris == 0) {
-    throw InvalidParameter("mesh", "no triangle with an area", "at least one");
-  }
-  model_.endModel();
-  moments_.resize(static_cast<std::size_t>(model_.getNumBVs()));
-  gatherMoments(0);
-  open_edges_ = lengthOfOpenEdges(model_);
-}
-
-std::array<Eigen::Vector3d, 3> Surface::corners(int node) const {
-  const fcl::Triangle& triangle = model_.tri_indices[model_.getBV(node).primitiveId()];
-  return {model_.vertices[triangle[0]], model_.vertices[triangle[1]], model_.vertices[triangle[2]]};
-}
-
-void Surface::gatherMoments(int node) {
-  const auto& tree = model_.getBV(node);
-  Moments& sum = moments_[static_cast<std::size_t>(node)];
-  if (tree.isLeaf()) {
-    const auto [a, b, c] = corners(node);
-    sum.area_vector = (b - a).cross(c - a) / 2.0;
-    sum.area = sum.area_vector.norm();
-    sum.centre = (a + b + c) / 3.0;
-  } else {
-    gatherMoments(tree.leftChild());
-    gatherMoments(tree.rightChild());
-    const Moments& left = moments_[static_cast<std::size_t>(tree.leftChild())];
-    const Moments& right = moments_[static_cast<std::size_t>(tree.rightChild())];
-    sum.area = left.area + right.area;
-    sum.centre = (left.area * left.centre + right.area * right.centre) / sum.area;
-    sum.area_vector = left.area_vector + right.area_vector;
-    sum.first = left.first + (left.centre - sum.centre) * left.area_vector.transpose() + right.first +
-                (right.centre - sum.centre) * right.area_vector.transpose();
-  }
-  const Eigen::Vector3d to_far_corner =
-      (tree.bv.max_ - sum.centre).cwiseAbs().cwiseMax((tree.bv.min_ - sum.centre).cwiseAbs());
-  sum.radius = to_far_corner.norm();
-}
-
-double Surface::squaredDistanceToBox(int node, const Eigen::Vector3d& point) const {
-  const fcl::AABB<double>& box = model_.getBV(node).bv;
-  return (box.min_ - point).cwiseMax(point - box.max_).cwiseMax(0.0).squaredNorm();
-}
-
-double Surface::distance(const Eigen::Vector3d& point, double bound) const {
-  double squared = bound * bound;
-  nearest(0, point, squared);
-  return std::sqrt(squared);
-}
-
-void Surface::nearest(int node, const Eigen::Vector3d& point, double& squared) const {
-  const auto& tree = model_.getBV(node);
-  if (tree.isLeaf()) {
-    const auto [a, b, c] = corners(node);
-    squared = std::min(squared, fcl::detail::Project<double>::projectTriangle(a, b, c, point).sqr_distance);
-    return;
-  }
-  int near = tree.leftChild();
-  int far = tree.rightChild();
-  double to_near = squaredDistanceToBox(near, point);
-  double to_far = squaredDistanceToBox(far, point);
-  if (to_far < to_near) {
-    std::swap(near, far);
-    std::swap(to_near, to_far);
-  }
-  if (to_near < squared) nearest(near, point, squared);
-  if (to_far < squared) nearest(far, point, squared);
-}
-
-/// Of one triangle: Van Oosterom and Strackee 1983. Positive when `point` is behind it.
-double solidAngleOf(const std::array<Eigen::Vector3d, 3>& triangle, const Eigen::Vector3d& point) {
-  const Eigen::Vector3d a = triangle[0] - point;
-  const Eigen::Vector3d b = triangle[1] - point;
-  const Eigen::Vector3d c = triangle[2] - point;
-  const double a_length = a.norm();
-  const double b_length = b.norm();
-  const double c_length = c.norm();
-  return 2.0 * std::atan2(a.dot(b.cross(c)), a_length * b_length * c_length + a.dot(b) * c_length +
-                                                 b.dot(c) * a_length + c.dot(a) * b_length);
-}
-
-double Surface::Moments::solidAngle(const Eigen::Vector3d& point) const {
-  const Eigen::Vector3d away = centre - point;
-  const double inverse = 1.0 / away.squaredNorm();
-  const double inverse_cubed = inverse * std::sqrt(inverse);
-  return inverse_cubed * (area_vector.dot(away) + first.trace() - 3.0 * inverse * away.dot(first * away));
-}
-
-double Surface::solidAngle(int node, const Eigen::Vector3d& point) const {
-  const auto& tree = model_.getBV(node);
-  if (tree.isLeaf()) return solidAngleOf(corners(node), point);
-  const Moments& moments = moments_[static_cast<std::size_t>(node)];
-  // At two radii the series was found wrong by up to 0.05 on a sphere, 0.04 on a bowl, 0.1 on four spheres in
-  // one another, 0.006 on loose triangles; three radii halve that and cost more.
-  const double far = 2.0 * moments.radius;
-  if ((moments.centre - point).squaredNorm() > far * far) return moments.solidAngle(point);
-  return solidAngle(tree.leftChild(), point) + solidAngle(tree.rightChild(), point);
-}
+bool isDoubtful(double winding) { return std::abs(winding - std::round(winding)) > kDoubt; }
 
 /// A box of samples.
 struct Block {
@@ -209,82 +35,162 @@ struct Block {
 
   Eigen::Vector3d middle() const { return first.cast<double>() + (size.cast<double>() - 1.0) / 2.0; }
   Eigen::Vector3d halfDiagonal() const { return (size.cast<double>() - 1.0) / 2.0; }
+  bool single() const { return size.maxCoeff() == 1; }
 };
 
+/// Consecutive samples of one axis.
+struct Run {
+  int first;
+  int size;
+};
+
+/// Halves; of an odd number also the one in the middle. So the parts of a mirror image are mirror images.
+std::vector<Run> cut(const Run& run) {
+  const int half = run.size / 2;
+  if (half == 0) return {run};
+  if (run.size % 2 == 0) return {{run.first, half}, {run.first + half, half}};
+  return {{run.first, half}, {run.first + half, 1}, {run.first + half + 1, half}};
+}
+
+/// Runs of kBlockSize to both sides of the one in the middle, which has one sample less; shorter at the ends.
+std::vector<Run> cutAxis(int samples) {
+  const int middle = samples / 2;
+  const int reach = kBlockSize / 2 - 1;
+  std::vector<Run> runs{{std::max(middle - reach, 0), std::min(2 * reach + 1, samples)}};
+  for (int offset = reach + 1; offset <= middle; offset += kBlockSize) {
+    const int size = std::min(kBlockSize, middle - offset + 1);
+    runs.push_back({middle + offset, size});
+    runs.push_back({middle - offset - size + 1, size});
+  }
+  return runs;
+}
+
+std::vector<Block> blocksFrom(const std::vector<Run>& along_x, const std::vector<Run>& along_y,
+                              const std::vector<Run>& along_z) {
+  std::vector<Block> blocks;
+  for (const Run& z : along_z) {
+    for (const Run& y : along_y) {
+      for (const Run& x : along_x) blocks.push_back({{x.first, y.first, z.first}, {x.size, y.size, z.size}});
+    }
+  }
+  return blocks;
+}
+
+std::vector<Block> cut(const Block& block) {
+  return blocksFrom(cut(Run{block.first.x(), block.size.x()}), cut(Run{block.first.y(), block.size.y()}),
+                    cut(Run{block.first.z(), block.size.z()}));
+}
+
 /// Fills a field block by block. Distance and winding number at a block's middle bound both everywhere in the
-/// block; only where that does not settle them is it cut in eight and looked at again, down to single
-/// samples.
+/// block; only where that does not settle them is it cut and looked at again, down to single samples.
 class Sampler {
  public:
-  Sampler(const Surface& surface, DistanceField& field) : surface_(surface), field_(field) {}
+  Sampler(const TriangleSurface& surface, double least_thickness, DistanceField& field)
+      : surface_(surface),
+        least_thickness_(least_thickness),
+        reach_(kExactReach * field.spacing + least_thickness / 2.0),
+        middle_sample_(Eigen::Array3i(field.samples[0], field.samples[1], field.samples[2]) / 2),
+        middle_(field.origin + field.spacing * middle_sample_.cast<double>().matrix()),
+        field_(field) {}
 
-  void fill(const Block& block) const { fill(block, kInfinity, Side::unknown); }
+  void fill(const Block& block) const { fill(block, kInfinity, {false, 0.0}); }
+  /// Of the samples next to the surface, the share at which it was moved.
+  double thickened() const {
+    return near_ > 0 ? static_cast<double>(moved_) / static_cast<double>(near_) : 0.0;
+  }
 
  private:
-  enum class Side { unknown, inside, outside };
+  /// Of a block: whether all of it lies on one side, and then a winding number that is right for that.
+  struct Side {
+    bool known;
+    double winding;
+  };
+  static bool isInside(double winding) { return std::abs(winding) > 0.5; }
 
-  /// `bound`: a length known to be no shorter than the distance at the block's middle [m]. `side`: of all
-  /// samples.
+  /// `bound`: a length known to be no shorter than the distance at the block's middle [m].
   void fill(const Block& block, double bound, Side side) const {
     const Eigen::Vector3d middle = position(block.middle());
-    const double distance = surface_.distance(middle, bound);
-    const double half_diagonal = field_.spacing * block.halfDiagonal().norm();
-    if (side == Side::unknown) side = sideOf(middle, half_diagonal, distance);
-    if (block.size.maxCoeff() == 1 || distance - half_diagonal >= kExactReach * field_.spacing) {
-      store(block, middle, distance, side);
+    const TriangleSurface::Nearest nearest = surface_.nearest(middle, bound);
+    if (block.single()) {
+      storeSample(block, middle, nearest, side.known ? side.winding : surface_.windingNumber(middle));
       return;
     }
-    for (int octant = 0; octant < 8; ++octant) {
-      const Block part = cut(block, octant);
-      if (part.size.minCoeff() == 0) continue;
+    const double half_diagonal = field_.spacing * block.halfDiagonal().norm();
+    if (!side.known) side = sideOf(middle, half_diagonal, nearest.distance);
+    if (nearest.distance - half_diagonal >= reach_) {
+      storeBound(block, middle, nearest.distance, side);
+      return;
+    }
+    for (const Block& part : cut(block)) {
       // The small excess keeps rounding from cutting off the true distance.
-      fill(part, (distance + (position(part.middle()) - middle).norm()) * (1.0 + 1e-9), side);
+      const double way = (position(part.middle()) - middle).norm();
+      fill(part, (nearest.distance + way) * (1.0 + 1e-9), side);
     }
   }
 
-  /// On which side everything within `radius` of `middle` lies, if one winding number can tell.
+  /// Of everything within `radius` of `middle`, if one winding number can tell. A closed mesh has one off its
+  /// surface. That of an open one changes, but it is a harmonic function there: it does not come from near a
+  /// whole number to ½ within half the way to the surface, unless it is far from whole numbers beyond.
   Side sideOf(const Eigen::Vector3d& middle, double radius, double distance) const {
     const double clearance = distance - radius;
-    if (clearance <= 0.0 && radius > 0.0) return Side::unknown;
-    const double change = radius > 0.0 ? kSeriesError + radius * surface_.windingGradient(clearance) : 0.0;
-    if (change >= 0.5) return Side::unknown;
-    const double above_half = surface_.windingNumber(middle) - 0.5;
-    if (std::abs(above_half) < change) return Side::unknown;
-    return above_half > 0.0 ? Side::inside : Side::outside;
+    if (clearance <= 0.0) return {false, 0.0};
+    const double change = kWindingError + radius * surface_.windingGradient(clearance);
+    const bool deep = radius <= kDeep * distance;
+    if (change >= 0.5 && !deep) return {false, 0.0};
+    const double winding = surface_.windingNumber(middle);
+    const double off_half = std::abs(std::abs(winding) - 0.5);
+    return {off_half >= change || (deep && off_half >= 0.5 - kDoubt), winding};
   }
 
-  Eigen::Vector3d position(const Eigen::Vector3d& sample) const {
-    return field_.origin + field_.spacing * sample;
-  }
-
-  static Block cut(const Block& block, int octant) {
-    const Eigen::Array3i upper(octant & 1, octant >> 1 & 1, octant >> 2 & 1);
-    const Eigen::Array3i half = (block.size + 1) / 2;
-    return {block.first + upper * half, upper * (block.size - half) + (1 - upper) * half};
+  void storeSample(const Block& block, const Eigen::Vector3d& point, const TriangleSurface::Nearest& nearest,
+                   double winding) const {
+    double missing = 0.0;
+    if (least_thickness_ > 0.0 && nearest.triangle >= 0 && nearest.distance < reach_) {
+      missing = missingThickness(surface_, point, nearest, winding, least_thickness_);
+      if (nearest.distance < field_.spacing) {
+        ++near_;
+        if (missing > 0.0) ++moved_;
+      }
+    } else if (!isInside(winding)) {
+      missing = least_thickness_;
+    }
+    const double distance = isInside(winding) ? -nearest.distance : nearest.distance;
+    at(block.first.x(), block.first.y(), block.first.z()) = static_cast<float>(distance - missing / 2.0);
   }
 
   /// Nowhere does the distance change faster than the position does.
-  void store(const Block& block, const Eigen::Vector3d& middle, double distance, Side side) const {
+  void storeBound(const Block& block, const Eigen::Vector3d& middle, double distance,
+                  const Side& side) const {
     const Eigen::Array3i end = block.first + block.size;
     for (int k = block.first.z(); k < end.z(); ++k) {
       for (int j = block.first.y(); j < end.y(); ++j) {
         for (int i = block.first.x(); i < end.x(); ++i) {
           const Eigen::Vector3d point = position(Eigen::Vector3d(i, j, k));
           const double length = distance - (point - middle).norm();
-          const Side here = side == Side::unknown ? sideOf(point, 0.0, length) : side;
-          field_.distance[index(i, j, k)] = static_cast<float>(here == Side::inside ? -length : length);
+          const bool inside = isInside(side.known ? side.winding : surface_.windingNumber(point));
+          at(i, j, k) = static_cast<float>(inside ? -length : length - least_thickness_ / 2.0);
         }
       }
     }
   }
 
-  std::size_t index(int i, int j, int k) const {
+  /// Counted from the middle, so that mirrored samples lie at mirrored places in every bit.
+  Eigen::Vector3d position(const Eigen::Vector3d& sample) const {
+    return middle_ + field_.spacing * (sample - middle_sample_.cast<double>().matrix());
+  }
+  float& at(int i, int j, int k) const {
     const auto wide = [](int value) { return static_cast<std::size_t>(value); };
-    return (wide(k) * wide(field_.samples[1]) + wide(j)) * wide(field_.samples[0]) + wide(i);
+    return field_.distance[(wide(k) * wide(field_.samples[1]) + wide(j)) * wide(field_.samples[0]) + wide(i)];
   }
 
-  const Surface& surface_;
+  const TriangleSurface& surface_;
+  const double least_thickness_;
+  const double reach_;  ///< distances up to this are exact [m]
+  const Eigen::Array3i middle_sample_;
+  const Eigen::Vector3d middle_;
   DistanceField& field_;
+  mutable std::atomic<long long> near_{0};
+  mutable std::atomic<long long> moved_{0};
 };
 
 void validate(const TriangleMesh& mesh, double spacing) {
@@ -305,12 +211,18 @@ void validate(const TriangleMesh& mesh, double spacing) {
   }
 }
 
-/// A field round all vertices, its distances still to be filled in.
-DistanceField emptyField(const TriangleMesh& mesh, double spacing) {
+Eigen::AlignedBox3d boundsOf(const TriangleMesh& mesh) {
   Eigen::AlignedBox3d bounds;
   for (const Eigen::Vector3d& vertex : mesh.vertices) bounds.extend(vertex);
+  return bounds;
+}
+
+/// A field round all vertices and what they grow by, its distances still to be filled in.
+DistanceField emptyField(const Eigen::AlignedBox3d& bounds, const Sampling& sampling) {
+  const double spacing = sampling.spacing;
   // An odd number of samples about the middle: a plate thinner than the spacing then has samples inside.
-  const Eigen::Array3d to_each_side = (bounds.sizes().array() / (2.0 * spacing)).ceil() + kMargin;
+  const Eigen::Array3d to_each_side =
+      ((bounds.sizes().array() + sampling.least_thickness) / (2.0 * spacing)).ceil() + kMargin;
   const Eigen::Array3d samples = 2.0 * to_each_side + 1.0;
   if (!(samples.prod() <= kMostSamples)) {
     throw InvalidParameter("spacing",
@@ -326,18 +238,18 @@ DistanceField emptyField(const TriangleMesh& mesh, double spacing) {
   return field;
 }
 
-std::vector<Block> blocksOf(const DistanceField& field) {
-  const Eigen::Array3i samples(field.samples[0], field.samples[1], field.samples[2]);
-  std::vector<Block> blocks;
-  for (int z = 0; z < samples.z(); z += kBlockSize) {
-    for (int y = 0; y < samples.y(); y += kBlockSize) {
-      for (int x = 0; x < samples.x(); x += kBlockSize) {
-        const Eigen::Array3i first(x, y, z);
-        blocks.push_back({first, (samples - first).min(kBlockSize)});
-      }
-    }
+/// Share of the box whose winding number is in doubt, from kProbes³ places in it.
+double doubtfulShare(const TriangleSurface& surface, const Eigen::AlignedBox3d& box) {
+  int doubtful = 0;
+#pragma omp parallel for reduction(+ : doubtful)
+  for (int probe = 0; probe < kProbes * kProbes * kProbes; ++probe) {
+    const Eigen::Array3d place(probe % kProbes, probe / kProbes % kProbes, probe / (kProbes * kProbes));
+    const Eigen::Vector3d point =
+        box.min() + box.sizes().cwiseProduct(((place + 0.5) / static_cast<double>(kProbes)).matrix());
+    const double winding = surface.windingNumber(point);
+    if (isDoubtful(winding)) ++doubtful;
   }
-  return blocks;
+  return static_cast<double>(doubtful) / (kProbes * kProbes * kProbes);
 }
 
 }  // namespace
@@ -351,16 +263,34 @@ DistanceFieldView DistanceField::view(const float* data) const {
           {static_cast<float>(origin.x()), static_cast<float>(origin.y()), static_cast<float>(origin.z())}};
 }
 
-DistanceField computeDistanceField(const TriangleMesh& mesh, double spacing) {
-  validate(mesh, spacing);
-  DistanceField field = emptyField(mesh, spacing);
-  const Surface surface(mesh);
-  const Sampler sampler(surface, field);
-  const std::vector<Block> blocks = blocksOf(field);
+SampledMesh sampleMesh(const TriangleMesh& mesh, const Sampling& sampling) {
+  validate(mesh, sampling.spacing);
+  SampledMesh sampled;
+  const Eigen::AlignedBox3d bounds = boundsOf(mesh);
+  sampled.field = emptyField(bounds, sampling);
+  const DistanceField& field = sampled.field;
+  const TriangleSurface surface(mesh);
+  const Sampler sampler(surface, sampling.least_thickness, sampled.field);
+  const std::vector<Block> blocks =
+      blocksFrom(cutAxis(field.samples[0]), cutAxis(field.samples[1]), cutAxis(field.samples[2]));
+  std::atomic<std::size_t> done{0};
   // Which blocks are near the surface is not known before: whoever is free takes the next.
 #pragma omp parallel for schedule(dynamic)
-  for (std::size_t i = 0; i < blocks.size(); ++i) sampler.fill(blocks[i]);
-  return field;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    sampler.fill(blocks[i]);
+    const std::size_t filled = ++done;
+    if (sampling.progress && omp_get_thread_num() == 0) {
+      sampling.progress(static_cast<double>(filled) / static_cast<double>(blocks.size()));
+    }
+  }
+  sampled.thickened = sampler.thickened();
+  sampled.doubtful = doubtfulShare(surface, bounds);
+  sampled.open_edges = surface.openEdges();
+  return sampled;
+}
+
+DistanceField computeDistanceField(const TriangleMesh& mesh, double spacing) {
+  return sampleMesh(mesh, {spacing, 0.0, {}}).field;
 }
 
 }  // namespace shallow_sand

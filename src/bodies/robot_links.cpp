@@ -9,10 +9,15 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 #include "shallow_sand/core/parameters.h"
@@ -20,23 +25,54 @@
 namespace shallow_sand {
 namespace {
 
-resource_retriever::MemoryResource retrieve(const std::string& uri) {
-  const std::string expected = "a readable file as package://PACKAGE/PATH or file:///PATH";
-  resource_retriever::MemoryResource file;
-  try {
-    file = resource_retriever::Retriever().get(uri);
-  } catch (const resource_retriever::Exception& error) {
-    throw InvalidParameter("mesh", "'" + uri + "' (" + error.what() + ")", expected);
+/// assimp needs some ten times as much memory as a file is large.
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 28;
+constexpr unsigned int kMostTriangles = 20000000;
+
+void requireReadable(const std::string& uri, std::uintmax_t bytes) {
+  if (bytes == 0) throw InvalidParameter("mesh", "'" + uri + "', an empty file", "a mesh");
+  if (bytes > kMostBytes) {
+    throw InvalidParameter("mesh", "'" + uri + "', a file of " + std::to_string(bytes >> 20) + " MiB",
+                           "at most " + std::to_string(kMostBytes >> 20) +
+                               " MiB (a mesh editor can reduce the number of triangles)");
   }
-  if (file.size == 0) throw InvalidParameter("mesh", "'" + uri + "', an empty file", expected);
-  return file;
+}
+
+std::string contentOf(const std::string& path) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  std::ifstream file(path, std::ios::binary);
+  if (error || !file) {
+    throw InvalidParameter("mesh", "'" + path + "', which cannot be read", "a readable file");
+  }
+  requireReadable(path, bytes);
+  return std::string((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+}
+
+std::string retrieve(const std::string& uri) {
+  if (uri.find("://") == std::string::npos) return contentOf(uri);
+  const std::string file_scheme = "file://";
+  std::error_code error;
+  if (uri.rfind(file_scheme, 0) == 0) {
+    // Before it fills the memory. What is not found here may be written otherwise, such as with %20.
+    const std::uintmax_t bytes = std::filesystem::file_size(uri.substr(file_scheme.size()), error);
+    if (!error) requireReadable(uri, bytes);
+  }
+  try {
+    const resource_retriever::MemoryResource file = resource_retriever::Retriever().get(uri);
+    requireReadable(uri, file.size);
+    return std::string(reinterpret_cast<const char*>(file.data.get()), file.size);
+  } catch (const resource_retriever::Exception& problem) {
+    throw InvalidParameter("mesh", "'" + uri + "' (" + problem.what() + ")",
+                           "a readable file as package://PACKAGE/PATH or file:///PATH");
+  }
 }
 
 /// Length of a COLLADA file's unit [m]; 1 for other files. assimp puts unit and up axis into the root node's
 /// transform, which geometric_shapes drops, as rviz does; rviz then applies the unit itself.
-double unitOf(const resource_retriever::MemoryResource& file) {
+double unitOf(const std::string& file) {
   tinyxml2::XMLDocument document;
-  document.Parse(reinterpret_cast<const char*>(file.data.get()), file.size);
+  document.Parse(file.data(), file.size());
   const auto* unit = tinyxml2::XMLHandle(document)
                          .FirstChildElement("COLLADA")
                          .FirstChildElement("asset")
@@ -173,14 +209,18 @@ TriangleMesh readMesh(const std::string& uri, const Eigen::Vector3d& scale) {
     found << "'" << uri << "' with scale " << scale.transpose();
     throw InvalidParameter("mesh", found.str(), "three finite factors, none zero");
   }
-  const resource_retriever::MemoryResource file = retrieve(uri);
+  const std::string file = retrieve(uri);
   // Vertices that coincide are merged, and nothing is centred. The transforms of all nodes but the root are
   // applied.
-  const std::unique_ptr<shapes::Mesh> mesh(shapes::createMeshFromBinary(
-      reinterpret_cast<const char*>(file.data.get()), file.size, unitOf(file) * scale, uri));
+  const std::unique_ptr<shapes::Mesh> mesh(
+      shapes::createMeshFromBinary(file.data(), file.size(), unitOf(file) * scale, uri));
   if (!mesh || mesh->triangle_count == 0) {
     throw InvalidParameter("mesh", "'" + uri + "', in which assimp finds no triangles",
                            "a mesh file that assimp reads: STL, COLLADA, OBJ");
+  }
+  if (mesh->triangle_count > kMostTriangles) {
+    throw InvalidParameter("mesh", "'" + uri + "', " + std::to_string(mesh->triangle_count) + " triangles",
+                           "at most " + std::to_string(kMostTriangles));
   }
   return copyOf(*mesh, scale.prod() < 0.0);
 }

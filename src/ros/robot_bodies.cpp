@@ -3,7 +3,7 @@
 #include <ros/console.h>
 #include <tf2_eigen/tf2_eigen.h>
 
-#include "shallow_sand/scene/simulation.h"
+#include "shallow_sand/bodies/body_geometry.h"
 
 namespace shallow_sand {
 

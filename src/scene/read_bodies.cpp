@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <cmath>
 
 #include "bounds.h"
 #include "scene_reader.h"
+#include "shallow_sand/bodies/robot_links.h"
 
 namespace shallow_sand {
 namespace {
@@ -11,19 +13,46 @@ Cylinder readCylinder(const SceneValue& value) {
   return {value.at("radius").number(bounds::positive), value.at("length").number(bounds::positive)};
 }
 
-Shape readShape(const SceneValue& value) {
-  if (const auto mesh = value.find("mesh")) {
-    mesh->fail("mesh", "box, cylinder or sphere (meshes are not available yet)");
+constexpr Bound kScale{[](double v) { return std::abs(v) >= 1e-9 && std::abs(v) <= 1e9; },
+                       "a number from 1e-9 to 1e9, or the negative of one, which mirrors"};
+
+/// A package:// or file:// address as it is, anything else as the path of a file.
+std::string uriFrom(const SceneValue& value) {
+  const std::string written = value.text();
+  for (const char* scheme : {"package://", "file://"}) {
+    if (written.rfind(scheme, 0) == 0) return written;
   }
-  const std::string kind = value.requireOneOf({"box", "cylinder", "sphere"});
+  if (written.find("://") != std::string::npos) {
+    value.fail("package://PACKAGE/PATH, file:///PATH or the path of a file");
+  }
+  return value.path();
+}
+
+void readMeshInto(SceneBody& body, const SceneValue& value) {
+  value.requireMap({"mesh", "scale", "as"});
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();
+  value.read("scale", kScale, scale);
+  const std::string uri = uriFrom(value.at("mesh"));
+  value.check([&] { body.shape = readMesh(uri, scale); });
+  if (const auto as = value.find("as")) {
+    value.check([&] { body.stands_for = linkShapeFromString(as->text(), "as"); });
+  }
+}
+
+void readShapeInto(SceneBody& body, const SceneValue& value) {
+  if (value.find("mesh")) {
+    readMeshInto(body, value);
+    return;
+  }
+  const std::string kind = value.requireOneOf({"box", "cylinder", "sphere", "mesh"});
   const SceneValue shape = value.at(kind);
   if (kind == "box") {
-    return Box{shape.vector<3>(bounds::positive)};
+    body.shape = Box{shape.vector<3>(bounds::positive)};
+  } else if (kind == "cylinder") {
+    body.shape = readCylinder(shape);
+  } else {
+    body.shape = Sphere{shape.number(bounds::positive)};
   }
-  if (kind == "cylinder") {
-    return readCylinder(shape);
-  }
-  return Sphere{shape.number(bounds::positive)};
 }
 
 /// Roll, pitch and yaw about the fixed axes x, y and z, in this order, as in URDF. [rad]
@@ -61,7 +90,11 @@ std::vector<PoseKey> readMotion(const SceneValue& value) {
 
 SceneBody readBody(const SceneValue& value) {
   value.requireMap({"name", "shape", "motion"});
-  return {value.at("name").text(), readShape(value.at("shape")), readMotion(value.at("motion"))};
+  SceneBody body;
+  body.name = value.at("name").text();
+  readShapeInto(body, value.at("shape"));
+  body.motion = readMotion(value.at("motion"));
+  return body;
 }
 
 }  // namespace

@@ -166,7 +166,11 @@ void runScene(const Options& options) {
   requireWritable("--save", options.save);
   requireWritable("--report", options.report);
   requireWritable("--picture", options.picture);
-  Simulator simulator = buildSimulator(scene);
+  std::vector<std::string> notes;
+  Simulator simulator = buildSimulator(scene, &notes);
+  for (const std::string& note : notes) {
+    std::fprintf(stderr, "%s\n", note.c_str());
+  }
   if (!options.load.empty()) {
     resume(simulator, options.load);
   }

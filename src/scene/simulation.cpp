@@ -1,19 +1,25 @@
 #include "shallow_sand/scene/simulation.h"
 
-#include <algorithm>
 #include <utility>
+#include <variant>
 
-#include "shallow_sand/bodies/distance_field.h"
+#include "shallow_sand/bodies/body_geometry.h"
 #include "shallow_sand/bodies/motion.h"
 
 namespace shallow_sand {
 namespace {
 
-void addBody(Simulator& simulator, const SceneBody& body) {
-  const TriangleMesh mesh = triangulate(body.shape);
-  const double spacing = distanceSpacing(mesh, simulator.parameters().grid.spacing);
-  auto field = std::make_shared<const DistanceField>(computeDistanceField(mesh, spacing));
-  const std::size_t number = simulator.addBody(body.name, std::move(field));
+void addBody(Simulator& simulator, const SceneBody& body, std::vector<std::string>* notes) {
+  BodyGeometryOptions options;
+  options.shape = body.stands_for;
+  // The other shapes are sampled sooner than a file is read.
+  if (std::holds_alternative<TriangleMesh>(body.shape)) options.cache = defaultCacheFolder();
+  const BodyGeometry geometry =
+      makeBodyGeometry(triangulate(body.shape), simulator.parameters().grid.spacing, options);
+  if (notes != nullptr) {
+    for (const std::string& note : geometry.notes) notes->push_back("body " + body.name + ": " + note);
+  }
+  const std::size_t number = simulator.addBody(body.name, geometry.field);
   for (const PoseKey& key : body.motion) {
     simulator.appendPose(number, key.time, key.pose);
   }
@@ -21,7 +27,7 @@ void addBody(Simulator& simulator, const SceneBody& body) {
 
 }  // namespace
 
-Simulator buildSimulator(Scene scene) {
+Simulator buildSimulator(Scene scene, std::vector<std::string>* notes) {
   std::string about;
   try {
     Simulator simulator(scene.parameters, std::move(scene.bed), std::move(scene.depth),
@@ -32,21 +38,12 @@ Simulator buildSimulator(Scene scene) {
     }
     for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
       about = "bodies[" + std::to_string(k) + "]: ";
-      addBody(simulator, scene.bodies[k]);
+      addBody(simulator, scene.bodies[k], notes);
     }
     return simulator;
   } catch (const InvalidParameter& error) {
     throw SceneError(scene.source + ": " + about + error.what());
   }
-}
-
-double distanceSpacing(const TriangleMesh& mesh, double sand_spacing) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& vertex : mesh.vertices) {
-    box.extend(vertex);
-  }
-  const double finest = std::max(box.sizes().minCoeff() / 4.0, sand_spacing / 8.0);
-  return std::min(sand_spacing / 2.0, finest);
 }
 
 Eigen::Isometry3d poseAt(const SceneBody& body, double time) {

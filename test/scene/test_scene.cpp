@@ -184,11 +184,16 @@ INSTANTIATE_TEST_SUITE_P(
                 "exactly one"},
         Mistake{"backend: cpu", "backend: tpu", "27: backend: tpu;", "auto, cpu or cuda"}));
 
-INSTANTIATE_TEST_SUITE_P(NotYetAvailable, SceneMistakes,
-                         ::testing::Values(Mistake{
-                             "{sphere: 0.2}", "{mesh: \"a.stl\", scale: [1, 1, 1]}",
-                             "23: bodies[2].shape.mesh: ",
-                             "box, cylinder or sphere (meshes are not available yet)"}));
+INSTANTIATE_TEST_SUITE_P(Meshes, SceneMistakes,
+                         ::testing::Values(Mistake{"{sphere: 0.2}", "{mesh: /no_such.stl}",
+                                                   "23: bodies[2].shape.mesh: ", "a readable file"},
+                                           Mistake{"{sphere: 0.2}", "{mesh: \"http://host/a.stl\"}",
+                                                   "23: bodies[2].shape.mesh: ", "package://"},
+                                           Mistake{"{sphere: 0.2}", "{mesh: a.stl, scale: [1, 0, 1]}",
+                                                   "23: bodies[2].shape.scale[1]: 0;", "which mirrors"},
+                                           Mistake{"{sphere: 0.2}", "{mesh: a.stl, size: 2}",
+                                                   "23: bodies[2].shape.size: unknown key",
+                                                   "mesh, scale, as"}));
 
 TEST(Scene, ErrorsWithoutAFileHaveNoLine) {
   YAML::Node root;

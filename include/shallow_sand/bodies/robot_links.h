@@ -26,10 +26,10 @@ struct RobotGeometry {
 RobotGeometry collisionGeometry(const std::string& urdf_xml);
 
 /// The triangles of a mesh file, where and as large as rviz shows them: in the file's own axes (its up axis
-/// is not applied), in metres (COLLADA's `<unit meter>` is), times `scale`. `uri`: package://PACKAGE/PATH or
-/// file:///PATH; STL, COLLADA, OBJ and whatever else assimp reads.
-/// @throws InvalidParameter with key `mesh` if the file can't be read, holds no triangle, or `scale` is zero
-/// or not finite
+/// is not applied), in metres (COLLADA's `<unit meter>` is), times `scale`. `uri`: package://PACKAGE/PATH,
+/// file:///PATH or the path of a file; STL, COLLADA, OBJ and whatever else assimp reads.
+/// @throws InvalidParameter with key `mesh` if the file can't be read, is larger than 256 MiB, holds no
+/// triangle or more than 20 million, or `scale` is zero or not finite
 TriangleMesh readMesh(const std::string& uri, const Eigen::Vector3d& scale);
 
 }  // namespace shallow_sand

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "shallow_sand/bodies/body_geometry.h"
 #include "shallow_sand/bodies/shape.h"
 #include "shallow_sand/core/parameters.h"
 #include "shallow_sand/sim/simulator.h"
@@ -30,9 +31,10 @@ struct PoseKey {
 
 /// A kinematic body. Scene key `bodies`.
 struct SceneBody {
-  std::string name;             ///< unlike that of any other body
-  Shape shape;                  ///< in the body's frame
-  std::vector<PoseKey> motion;  ///< at least one; times increase
+  std::string name;                         ///< unlike that of any other body
+  Shape shape;                              ///< in the body's frame
+  LinkShape stands_for = LinkShape::exact;  ///< what of a mesh goes into the sand
+  std::vector<PoseKey> motion;              ///< at least one; times increase
 };
 
 /// Everything that a scene file says.

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "shallow_sand/bodies/distance_field.h"
+
+namespace shallow_sand {
+
+/// Sampled meshes on disk, found by what they were made from. Several programs may use one folder at once.
+class FieldCache {
+ public:
+  explicit FieldCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// Nothing if it is not there or not as it was written.
+  std::optional<SampledMesh> load(const std::string& key) const;
+  /// Writes a file of its own, then gives it its name; removes the files that were used longest ago when all
+  /// together are larger than 1 GiB. @return what went wrong; empty if nothing did
+  std::string store(const std::string& key, const SampledMesh& sampled) const;
+
+ private:
+  std::filesystem::path fileOf(const std::string& key) const;
+  void makeRoom() const;
+  std::filesystem::path folder_;
+};
+
+/// A name for everything that a sampled mesh depends on: the same for the same bits only.
+std::string cacheKey(const TriangleMesh& mesh, const Sampling& sampling);
+
+}  // namespace shallow_sand

@@ -1,0 +1,99 @@
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <variant>
+
+#include "shallow_sand/scene/simulation.h"
+
+namespace shallow_sand {
+namespace {
+
+/// A folder with a scene and what it names; the caches of programs go there, too.
+class SceneMeshes : public ::testing::Test {
+ protected:
+  SceneMeshes() {
+    std::string path = "/tmp/shallow_sand_XXXXXX";
+    if (mkdtemp(&path[0]) == nullptr) throw std::runtime_error("no temporary folder at " + path);
+    folder_ = path;
+    setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
+    // A tetrahedron that faces outwards.
+    write("corner.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  }
+  ~SceneMeshes() override { std::filesystem::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& content) const {
+    std::ofstream(folder_ / name) << content;
+  }
+  Scene load(const std::string& shape) const {
+    write("scene.yaml",
+          "grid: {size: [2, 2], spacing: 0.1}\nsand: [{depth: 0.3}]\nbodies:\n  - name: tool\n    shape: " +
+              shape + "\n    motion: [{time: 0, position: [0.8, 0.8, 0.1]}]\n");
+    return loadScene((folder_ / "scene.yaml").string());
+  }
+  std::string messageOf(const std::string& shape) const {
+    try {
+      load(shape);
+    } catch (const SceneError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+  std::filesystem::path folder_;
+};
+
+/// Positive only when triangles face outwards.
+double volume(const Shape& shape) {
+  const TriangleMesh& mesh = std::get<TriangleMesh>(shape);
+  double sum = 0.0;
+  for (const auto& triangle : mesh.triangles) {
+    const auto vertex = [&](std::size_t i) { return mesh.vertices[static_cast<std::size_t>(triangle[i])]; };
+    sum += vertex(0).dot(vertex(1).cross(vertex(2))) / 6.0;
+  }
+  return sum;
+}
+
+TEST_F(SceneMeshes, areReadFromTheScenesFolder) {
+  EXPECT_NEAR(volume(load("{mesh: corner.obj}").bodies[0].shape), 1.0 / 6.0, 1e-6);
+  EXPECT_NEAR(volume(load("{mesh: \"file://" + (folder_ / "corner.obj").string() + "\"}").bodies[0].shape),
+              1.0 / 6.0, 1e-6);
+}
+
+TEST_F(SceneMeshes, areScaledAndMirrored) {
+  const Scene scene = load("{mesh: corner.obj, scale: [-2, 1, 1], as: convex_hull}");
+  EXPECT_NEAR(volume(scene.bodies[0].shape), 2.0 / 6.0, 1e-6);
+  EXPECT_EQ(scene.bodies[0].stands_for, LinkShape::convex_hull);
+  for (const Eigen::Vector3d& vertex : std::get<TriangleMesh>(scene.bodies[0].shape).vertices) {
+    EXPECT_LE(vertex.x(), 0.0);
+  }
+}
+
+TEST_F(SceneMeshes, displaceSandAndAreKeptForTheNextRun) {
+  Simulator simulator = buildSimulator(load("{mesh: corner.obj}"));
+  EXPECT_GT(simulator.bodyOverlap(), 0.0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "cache" / "shallow_sand"));
+}
+
+TEST_F(SceneMeshes, faultyFilesAreOneClearLine) {
+  write("empty.stl", "");
+  write("text.stl", "this is no mesh");
+  for (const std::string file : {"empty.stl", "text.stl", "no_such.stl", "."}) {
+    const std::string message = messageOf("{mesh: " + file + "}");
+    EXPECT_NE(message.find("scene.yaml:5: bodies[0].shape.mesh: "), std::string::npos) << message;
+    EXPECT_NE(message.find("; expected "), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+}
+
+TEST_F(SceneMeshes, hugeFilesAreRefusedUnread) {
+  write("huge.stl", "x");
+  std::filesystem::resize_file(folder_ / "huge.stl", std::uintmax_t{3} << 30);  // takes no room on the disk
+  EXPECT_NE(messageOf("{mesh: huge.stl}").find("a file of 3072 MiB; expected at most 256 MiB"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace shallow_sand
