@@ -14,6 +14,16 @@ constexpr double kKeySpacing = 0.02;
 
 }  // namespace
 
+double farthestMove(const Eigen::AlignedBox3d& box, const Eigen::Isometry3d& from,
+                    const Eigen::Isometry3d& to) {
+  double farthest = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d point = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
+    farthest = std::max(farthest, (to * point - from * point).norm());
+  }
+  return farthest;
+}
+
 Movement PoseTrack::follow(const FrameTimes& frame, double newest, const PoseSource& poseAt) {
   PoseTrack next = *this;
   Movement movement;
@@ -64,17 +74,8 @@ void PoseTrack::move(const FrameTimes& frame, double newest, const PoseSource& p
   }
 }
 
-double PoseTrack::distance(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to) const {
-  double farthest = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3d point = box_.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
-    farthest = std::max(farthest, (to * point - from * point).norm());
-  }
-  return farthest;
-}
-
 std::optional<Movement::Jump> PoseTrack::jumpTo(const Place& place) const {
-  const Movement::Jump jump{distance(reached_->pose, place.pose), place.time - reached_->time};
+  const Movement::Jump jump{farthestMove(box_, reached_->pose, place.pose), place.time - reached_->time};
   if (jump.distance <= fastest_ * jump.duration) return std::nullopt;
   return jump;
 }

@@ -7,6 +7,10 @@
 
 namespace shallow_sand {
 
+/// How far the corner of a box that goes farthest goes from one pose to another. [m]
+double farthestMove(const Eigen::AlignedBox3d& box, const Eigen::Isometry3d& from,
+                    const Eigen::Isometry3d& to);
+
 /// The stretch (start, end] of the clock of poses that one frame of the sand covers. [s]
 struct FrameTimes {
   double start;
@@ -64,8 +68,6 @@ class PoseTrack {
   };
   void enter(const FrameTimes& frame, double newest, const PoseSource& poseAt, Movement& movement);
   void move(const FrameTimes& frame, double newest, const PoseSource& poseAt, Movement& movement);
-  /// Of the corner of the box that goes farthest. [m]
-  double distance(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to) const;
   std::optional<Movement::Jump> jumpTo(const Place& place) const;
 
   Eigen::AlignedBox3d box_;
