@@ -25,8 +25,6 @@ Eigen::Isometry3d rigid(const geometry_msgs::Transform& transform) {
   return pose;
 }
 
-std::string kindOf(const BodyStatus& status) { return status.robot.empty() ? "body " : "link "; }
-
 bool mayTell(ros::WallTime& told, double period) {
   const ros::WallTime now = ros::WallTime::now();
   if (!told.isZero() && (now - told).toSec() < period) return false;
@@ -162,6 +160,7 @@ void SandBodies::update(const ros::Time& end, double duration, double simulated_
   for (Body& body : bodies_) {
     if (body.following) follow(body, {time - duration, time, simulated_end}, now);
   }
+  news_.tell();
 }
 
 void SandBodies::follow(Body& body, const FrameTimes& times, const ros::Time& now) {
@@ -196,19 +195,19 @@ void SandBodies::apply(Body& body, const Movement& movement) {
   if (!movement.jump) return;
   ++body.status.jumps;
   if (!mayTell(body.following->told_jump, 5.0)) return;
-  ROS_WARN_STREAM(kindOf(body.status)
-                  << body.status.name << " jumped " << movement.jump->distance << " m in "
-                  << movement.jump->duration << " s by tf frame " << body.following->frame.name
-                  << ", faster than ~max_body_speed " << max_body_speed_
-                  << " m/s; it is put there without a kick (jumps so far: " << body.status.jumps << ")");
+  std::ostringstream story;
+  story << " jumped " << movement.jump->distance << " m in " << movement.jump->duration << " s by tf frame "
+        << body.following->frame.name << ", faster than ~max_body_speed " << max_body_speed_
+        << " m/s; it is put there without a kick (jumps so far: " << body.status.jumps << ")";
+  news_.add(BodyNews::Event::jumped, body.status, story.str());
 }
 
 void SandBodies::tellLate(const Body& body, double late) {
   if (!mayTell(told_late_, 60.0)) return;
-  ROS_WARN_STREAM(
-      "tf frame " << body.status.frame << " came " << late << " s too late to move " << kindOf(body.status)
-                  << body.status.name << " evenly, so it rests at times; expected a ~tf_delay of at least "
-                  << tf_delay_ + late << " s (tf's period and latency), not " << tf_delay_ << " s");
+  ROS_WARN_STREAM("tf frame " << body.status.frame << " came " << late << " s too late to move "
+                              << body.status.name << " evenly; expected a ~tf_delay of at least "
+                              << tf_delay_ + late << " s (tf's period and latency), not " << tf_delay_
+                              << " s");
 }
 
 void SandBodies::report(Body& body, std::uint8_t state, const std::string& problem) {
@@ -219,13 +218,13 @@ void SandBodies::report(Body& body, std::uint8_t state, const std::string& probl
   status.problem = refusal.empty() ? problem : refusal;
   if (!news) return;
   if (problem.empty()) {
-    ROS_INFO_STREAM(kindOf(status) << status.name << " is in the sand's frame " << sand_frame_);
+    news_.add(BodyNews::Event::in_sand, status, " is in the sand's frame " + sand_frame_);
   } else {
-    ROS_ERROR_STREAM(
-        kindOf(status) << status.name << ": no pose from tf frame " << status.frame << " in the sand's frame "
-                       << sand_frame_ << ": " << status.problem << "; "
-                       << (state == BodyStatus::WAITING ? "it stays out of the sand until one comes"
-                                                        : "it rests where it was last seen"));
+    news_.add(BodyNews::Event::lost, status,
+              ": no pose from tf frame " + status.frame + " in the sand's frame " + sand_frame_ + ": " +
+                  status.problem + "; " +
+                  (state == BodyStatus::WAITING ? "it stays out of the sand until one comes"
+                                                : "it rests where it was last seen"));
   }
 }
 

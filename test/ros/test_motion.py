@@ -63,6 +63,21 @@ class Motion(unittest.TestCase):
             self.assertEqual(node.body("blade").jumps, 1)
             self.assertEqual(len(node.error_lines()), 1, node.error_lines())
 
+    def test_all_links_of_a_robot_share_a_line(self):
+        names = ["boom", "stick", "bucket"]
+        rospy.set_param("/robot_description", robot("digger", *map(link, names)))
+        frames = {name: lambda _: Place(parent="base") for name in names}
+        with World(dict(frames, base=sweep)) as world, RunningNode("together", SCENE) as node:
+            node.status(lambda status: len(status.bodies) == 3 and all(map(is_moving, status.bodies)))
+            world.frames["base"] = lambda time: Place(sweep(time).position[0] - 5.0, 0.5, 0.1)
+            node.status(lambda status: all(body.jumps == 1 for body in status.bodies))
+            self.assert_told_once(node, "jumped", "likewise links", *names)
+            world.frames["base"] = lambda _: None
+            node.status(lambda status: all(map(is_stale, status.bodies)))
+            self.assert_told_once(node, "rests where it was last seen", "likewise links", *names)
+            node.assert_well(self)
+            self.assertEqual(len(node.error_lines()), 2, node.error_lines())
+
     def test_time_goes_back(self):
         # As a bag that loops: from one cycle to the next, everything that moves is elsewhere.
         with World({"blade": sweep}, start=1000.0) as world, RunningNode("loops", SCENE) as node:

@@ -11,6 +11,7 @@
 #include "shallow_sand/bodies/distance_field.h"
 #include "shallow_sand/bodies/motion.h"
 #include "shallow_sand/bodies/pose_track.h"
+#include "shallow_sand/ros/body_news.h"
 #include "shallow_sand/ros/node_parameters.h"
 #include "shallow_sand/ros/transform_reader.h"
 #include "shallow_sand/sim/simulator.h"
@@ -90,6 +91,7 @@ class SandBodies {
   Simulator& simulator_;
   std::vector<Body> bodies_;
   ros::Time origin_;  ///< of the times given to tracks: as seconds since 1970 they would be too coarse
+  BodyNews news_;
   ros::WallTime told_late_;
 };
 
