@@ -1,10 +1,13 @@
 #include "shallow_sand/ros/body_services.h"
 
 #include <ros/console.h>
+#include <ros/init.h>
 
-#include <array>
+#include <chrono>
 #include <cmath>
 #include <sstream>
+#include <stdexcept>
+#include <utility>
 
 #include "shallow_sand/bodies/robot_links.h"
 
@@ -83,12 +86,40 @@ bool answer(const std::string& request, Response& response, const Action& action
 
 }  // namespace
 
-BodyServices::BodyServices(ros::NodeHandle& private_node, const std::string& sand_frame, double sand_spacing,
-                           SandBodies& bodies)
+BodyServices::BodyServices(const std::string& sand_frame, double sand_spacing, SandBodies& bodies)
     : sand_frame_(sand_frame), sand_spacing_(sand_spacing), bodies_(bodies) {
-  add_ = private_node.advertiseService("add_body", &BodyServices::add, this);
-  remove_ = private_node.advertiseService("remove_body", &BodyServices::remove, this);
-  move_ = private_node.advertiseService("move_body", &BodyServices::move, this);
+  node_.setCallbackQueue(&queue_);
+  add_ = node_.advertiseService("add_body", &BodyServices::add, this);
+  remove_ = node_.advertiseService("remove_body", &BodyServices::remove, this);
+  move_ = node_.advertiseService("move_body", &BodyServices::move, this);
+  spinner_.start();
+}
+
+void BodyServices::runPending() {
+  std::packaged_task<void()> task;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    std::swap(task, pending_);
+  }
+  if (task.valid()) task();
+}
+
+void BodyServices::inLoop(const std::function<void()>& action) {
+  std::packaged_task<void()> task(action);
+  std::future<void> done = task.get_future();
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    pending_ = std::move(task);
+  }
+  while (done.wait_for(std::chrono::milliseconds(100)) != std::future_status::ready) {
+    if (ros::ok()) continue;
+    // The loop ends. If it has not taken the task yet it must not, for what that refers to goes now.
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!pending_.valid()) continue;
+    pending_ = {};
+    throw std::runtime_error("the node is shutting down");
+  }
+  done.get();
 }
 
 Eigen::Isometry3d BodyServices::poseOf(const std::string& frame) const {
@@ -98,39 +129,42 @@ Eigen::Isometry3d BodyServices::poseOf(const std::string& frame) const {
 bool BodyServices::add(AddBody::Request& request, AddBody::Response& response) {
   return answer("~add_body " + request.name, response, [&] {
     const std::string& frame = request.pose.header.frame_id;
-    if (request.name.empty()) throw InvalidParameter("name", "empty", "a name");
-    if (bodies_.has(request.name)) {
-      throw InvalidParameter("name", request.name, "a name that no other body has");
-    }
+    const Eigen::Isometry3d pose = rigid(request.pose.pose);
     if (request.follow && frame.empty()) {
       throw InvalidParameter("pose.header.frame_id", "empty", "the tf frame to follow");
     }
-    const Eigen::Isometry3d pose = rigid(request.pose.pose);
-    const Eigen::Isometry3d placed = request.follow ? pose : poseOf(frame) * pose;
+    inLoop([&] {
+      bodies_.requireFree(request.name);
+      if (!request.follow) poseOf(frame);
+    });
     const ros::WallTime begin = ros::WallTime::now();
-    auto field = bodyField(meshOf(request), sand_spacing_);
+    const auto field = bodyField(meshOf(request), sand_spacing_);
+    const double duration = (ros::WallTime::now() - begin).toSec();
+    inLoop([&] {
+      if (request.follow) {
+        bodies_.addFollowing(request.name, "", {frame, pose}, field);
+      } else {
+        bodies_.addPlaced(request.name, poseOf(frame) * pose, field);
+      }
+    });
     std::ostringstream done;
-    done << "sampled in " << (ros::WallTime::now() - begin).toSec() << " s";
-    if (request.follow) {
-      bodies_.addFollowing(request.name, "", {frame, pose}, std::move(field));
-    } else {
-      bodies_.addPlaced(request.name, placed, std::move(field));
-    }
+    done << "sampled in " << duration << " s";
     return done.str();
   });
 }
 
 bool BodyServices::remove(RemoveBody::Request& request, RemoveBody::Response& response) {
   return answer("~remove_body " + request.name, response, [&] {
-    bodies_.remove(request.name);
+    inLoop([&] { bodies_.remove(request.name); });
     return std::string("removed");
   });
 }
 
 bool BodyServices::move(MoveBody::Request& request, MoveBody::Response& response) {
   return answer("~move_body " + request.name, response, [&] {
-    const Eigen::Isometry3d pose = poseOf(request.pose.header.frame_id) * rigid(request.pose.pose);
-    bodies_.move(request.name, pose, request.duration);
+    const Eigen::Isometry3d pose = rigid(request.pose.pose);
+    inLoop(
+        [&] { bodies_.move(request.name, poseOf(request.pose.header.frame_id) * pose, request.duration); });
     return request.duration > 0.0 ? "under way for " + std::to_string(request.duration) + " s"
                                   : std::string("put there");
   });

@@ -64,6 +64,11 @@ bool SandBodies::has(const std::string& name) const {
                      [&name](const Body& body) { return body.status.name == name; });
 }
 
+void SandBodies::requireFree(const std::string& name) const {
+  if (name.empty()) throw InvalidParameter("name", "empty", "a name");
+  if (has(name)) throw InvalidParameter("name", name, "a name that no other body has");
+}
+
 std::size_t SandBodies::indexOf(const std::string& name) const {
   std::string names;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -75,8 +80,7 @@ std::size_t SandBodies::indexOf(const std::string& name) const {
 
 SandBodies::Body& SandBodies::add(const std::string& name,
                                   const std::shared_ptr<const DistanceField>& field) {
-  if (name.empty()) throw InvalidParameter("name", "empty", "a name");
-  if (has(name)) throw InvalidParameter("name", name, "a name that no other body has");
+  requireFree(name);
   Body body;
   body.box = boxOf(*field);
   body.number = simulator_.addBody(name, field);

@@ -25,7 +25,7 @@ SandNode::SandNode()
     : parameters_(readNodeParameters(private_node_)),
       simulator_(buildSimulator(parameters_.scene)),
       bodies_(parameters_, transforms_, simulator_),
-      services_(private_node_, parameters_.scene.parameters.grid.frame, simulator_.grid().spacing, bodies_) {
+      services_(parameters_.scene.parameters.grid.frame, simulator_.grid().spacing, bodies_) {
   for (const RobotParameters& robot : parameters_.robots) {
     robots_.emplace_back(robot, parameters_.robots.size() == 1, simulator_.grid().spacing);
   }
@@ -43,6 +43,7 @@ void SandNode::run() {
   const ros::Duration delay(parameters_.tf_delay);
   while (ros::ok()) {
     ros::spinOnce();
+    services_.runPending();
     const ros::Time now = ros::Time::now();
     if (now < last_now_) restart(last_now_ - now);
     last_now_ = now;

@@ -37,8 +37,9 @@ class SandBodies {
   SandBodies(const NodeParameters& parameters, const TransformReader& transforms, Simulator& simulator);
 
   bool has(const std::string& name) const;
+  /// @throws InvalidParameter if the name is taken or empty; so do the next two
+  void requireFree(const std::string& name) const;
   /// Adds a body that follows tf. @param robot whose link it is; empty: none
-  /// @throws InvalidParameter if the name is taken or empty; so does the next
   void addFollowing(const std::string& name, const std::string& robot, const TfFrame& frame,
                     std::shared_ptr<const DistanceField> field);
   /// Adds a body that rests at a pose in the sand's frame.
