@@ -149,7 +149,7 @@ Eigen::Isometry3d SandBodies::lookUp(const TfFrame& frame, const ros::Time& time
 }
 
 void SandBodies::restartClock() {
-  origin_ = ros::Time();
+  origin_ = last_end_ = leapt_ = ros::Time();
   for (Body& body : bodies_) {
     if (!body.following) continue;
     body.following->track.restart();
@@ -161,10 +161,13 @@ void SandBodies::update(const ros::Time& end, double duration, double simulated_
   if (origin_.isZero()) origin_ = end;
   const double time = (end - origin_).toSec();
   const ros::Time now = end + ros::Duration(tf_delay_);
+  if (!last_end_.isZero() && (end - last_end_).toSec() > tf_timeout_) leapt_ = now;
+  last_end_ = end;
   for (Body& body : bodies_) {
     if (body.following) follow(body, {time - duration, time, simulated_end}, now);
   }
   news_.tell();
+  tellLate();
 }
 
 void SandBodies::follow(Body& body, const FrameTimes& times, const ros::Time& now) {
@@ -181,11 +184,12 @@ void SandBodies::follow(Body& body, const FrameTimes& times, const ros::Time& no
     }));
     following.in_sand = true;
     following.failing = ros::Time();
-    const bool stale = body.status.age > tf_timeout_;
+    // After a leap of the clock every pose is old for a moment.
+    const bool stale = body.status.age > tf_timeout_ && (now - leapt_).toSec() > tf_timeout_;
     report(body, stale ? BodyStatus::STALE : BodyStatus::MOVING,
            stale ? "its newest pose is " + std::to_string(body.status.age) + " s old" : "");
   } catch (const tf2::TransformException& problem) {
-    // After a start, or when time went on by leaps, tf has not come yet; that is no news.
+    // After a start or a leap of the clock tf has not come yet; that is no news.
     if (following.failing.isZero()) following.failing = now;
     if ((now - following.failing).toSec() < tf_timeout_) return;
     report(body, following.in_sand ? BodyStatus::STALE : BodyStatus::WAITING, problem.what());
@@ -195,7 +199,7 @@ void SandBodies::follow(Body& body, const FrameTimes& times, const ros::Time& no
 void SandBodies::apply(Body& body, const Movement& movement) {
   if (movement.placed) simulator_.placeBody(body.number, *movement.placed);
   for (const Movement::Key& key : movement.keys) simulator_.appendPose(body.number, key.time, key.pose);
-  if (movement.late > 0.0 && movement.late < tf_timeout_) tellLate(body, movement.late);
+  if (movement.late > 0.0 && movement.late < tf_timeout_) noteLate(body, movement.late);
   if (!movement.jump) return;
   ++body.status.jumps;
   if (!mayTell(body.following->told_jump, 5.0)) return;
@@ -206,12 +210,23 @@ void SandBodies::apply(Body& body, const Movement& movement) {
   news_.add(BodyNews::Event::jumped, body.status, story.str());
 }
 
-void SandBodies::tellLate(const Body& body, double late) {
-  if (!mayTell(told_late_, 60.0)) return;
-  ROS_WARN_STREAM("tf frame " << body.status.frame << " came " << late << " s too late to move "
-                              << body.status.name << " evenly; expected a ~tf_delay of at least "
-                              << tf_delay_ + late << " s (tf's period and latency), not " << tf_delay_
-                              << " s");
+void SandBodies::noteLate(const Body& body, double late) {
+  late_.in_frame = true;
+  if (late <= late_.most) return;
+  late_.most = late;
+  late_.frame = body.status.frame;
+}
+
+void SandBodies::tellLate() {
+  if (!late_.in_frame) return;
+  late_.in_frame = false;
+  // That a busy machine holds tf up now and then is no news.
+  if (++late_.count < 10 || !mayTell(late_.told, 60.0)) return;
+  ROS_WARN_STREAM("tf came too late to move bodies evenly, at worst "
+                  << late_.most << " s, in frame " << late_.frame << "; expected a ~tf_delay of at least "
+                  << tf_delay_ + late_.most << " s (tf's period and latency), not " << tf_delay_ << " s");
+  late_.count = 0;
+  late_.most = 0.0;
 }
 
 void SandBodies::report(Body& body, std::uint8_t state, const std::string& problem) {

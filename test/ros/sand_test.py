@@ -140,10 +140,11 @@ class World:
             with self.lock:
                 self.now += self.STEP
                 now = self.now
-            self.clock.publish(Clock(rospy.Time.from_sec(now)))
             stamp = now - self.latency
             places = {frame: place(stamp) for frame, place in list(self.frames.items())}
+            # The clock last: whoever knows the time has been sent the transforms up to it.
             self.tf.publish(TFMessage([transform(f, p, stamp) for f, p in places.items() if p is not None]))
+            self.clock.publish(Clock(rospy.Time.from_sec(now)))
 
 
 def transform(frame, place, stamp):

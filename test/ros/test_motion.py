@@ -47,7 +47,7 @@ class Motion(unittest.TestCase):
     def test_tf_comes_late(self):
         with World({"blade": sweep}) as world, RunningNode("late", SCENE) as node:
             world.latency = 0.3  # of which the node waits 0.1
-            self.assert_told_once(node, "tf frame blade", "too late", "~tf_delay of at least 0.")
+            self.assert_told_once(node, "frame blade", "too late", "~tf_delay of at least 0.3")
             late = node.body("blade", is_moving)
             self.assertGreater(late.age, 0.25)
             node.assert_well(self)

@@ -80,7 +80,8 @@ class SandBodies {
   std::size_t indexOf(const std::string& name) const;
   void follow(Body& body, const FrameTimes& times, const ros::Time& now);
   void apply(Body& body, const Movement& movement);
-  void tellLate(const Body& body, double late);
+  void noteLate(const Body& body, double late);
+  void tellLate();
   void report(Body& body, std::uint8_t state, const std::string& problem);
   Eigen::Isometry3d lookUp(const TfFrame& frame, const ros::Time& time) const;
 
@@ -92,8 +93,16 @@ class SandBodies {
   Simulator& simulator_;
   std::vector<Body> bodies_;
   ros::Time origin_;  ///< of the times given to tracks: as seconds since 1970 they would be too coarse
+  ros::Time last_end_;
+  ros::Time leapt_;  ///< when time last went on by more than ~tf_timeout from one frame to the next
   BodyNews news_;
-  ros::WallTime told_late_;
+  struct {
+    double most = 0.0;      ///< [s]
+    std::string frame;      ///< of tf, that was that late
+    int count = 0;          ///< frames of the sand in which poses were too late
+    bool in_frame = false;  ///< this one is among them
+    ros::WallTime told;
+  } late_;  ///< since it was told last
 };
 
 }  // namespace shallow_sand
