@@ -21,6 +21,7 @@ namespace shallow_sand {
 /// come; what it publishes is stamped with that earlier time. What lies more than 0.1 s back at a frame is
 /// given up, and ~status says by how much the sand lags; bodies cross what was given up without speed. When
 /// time goes backwards the sand goes on from there;
+/// - serves ~add_body, ~move_body and ~remove_body; meshes are read and sampled beside the sand;
 /// - publishes ~points, ~mesh (latched, at ~publish_rate) and ~status (latched, once a second);
 /// - at the end writes ~report and ~picture.
 class SandNode {
