@@ -2,6 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <sstream>
 
 namespace shallow_sand {
@@ -55,6 +56,62 @@ void takeBetween(YAML::Node& parameters, const std::string& source, const std::s
   throw SceneError(source + ": " + key + ": " + std::to_string(value) + "; expected " + expected);
 }
 
+void takePatterns(YAML::Node& parameters, const std::string& source, LinkPatterns& links) {
+  const std::string expected = "a list of patterns of link names, such as ['wheel_*']";
+  take(parameters, source, "include", expected, links.include);
+  take(parameters, source, "exclude", expected, links.exclude);
+}
+
+RobotParameters readRobot(YAML::Node robot, const std::string& source) {
+  if (!robot.IsMap()) {
+    throw SceneError(source + ": " + YAML::Dump(robot) + "; expected a map with the key description");
+  }
+  if (!robot["description"]) {
+    throw SceneError(source + ": description: missing; expected the name of a parameter with a URDF");
+  }
+  RobotParameters parameters;
+  take(robot, source, "description", "the name of a parameter", parameters.description);
+  take(robot, source, "name", "a text", parameters.name);
+  take(robot, source, "tf_prefix", "a text", parameters.tf_prefix);
+  takePatterns(robot, source, parameters.links);
+  for (const auto& unknown : robot) {
+    throw SceneError(source + ": " + unknown.first.as<std::string>() +
+                     ": unknown; expected one of description, name, tf_prefix, include, exclude");
+  }
+  return parameters;
+}
+
+std::vector<RobotParameters> readRobots(const YAML::Node& list, const std::string& source) {
+  std::vector<RobotParameters> robots;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const std::string about = source + ": robots[" + std::to_string(k) + "]";
+    robots.push_back(readRobot(list[k], about));
+    const std::string& name = robots.back().name;
+    const bool taken = std::any_of(robots.begin(), robots.end() - 1,
+                                   [&name](const RobotParameters& other) { return other.name == name; });
+    if (taken && !name.empty()) {
+      throw SceneError(about + ": name: " + name + "; expected a name that no other robot has");
+    }
+  }
+  return robots;
+}
+
+/// The robots of ~robots, or the one that the parameters beside it describe.
+std::vector<RobotParameters> takeRobots(YAML::Node& parameters, const std::string& source) {
+  RobotParameters single;
+  take(parameters, source, "robot_description", "the name of a parameter", single.description);
+  take(parameters, source, "tf_prefix", "a text", single.tf_prefix);
+  takePatterns(parameters, source, single.links);
+  std::vector<YAML::Node> list;
+  take(parameters, source, "robots", "a list of maps", list);
+  if (list.empty()) return {single};
+  if (!single.tf_prefix.empty() || !single.links.include.empty() || !single.links.exclude.empty()) {
+    throw SceneError(source +
+                     ": robots: given beside tf_prefix, include or exclude; expected these within robots");
+  }
+  return readRobots(YAML::Node(list), source);
+}
+
 }  // namespace
 
 NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
@@ -66,13 +123,15 @@ NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
     yaml = toYaml(all);
   }
   NodeParameters parameters;
-  take(yaml, source, "robot_description", "the name of a parameter", parameters.robot_description);
-  take(yaml, source, "tf_prefix", "a text", parameters.tf_prefix);
+  parameters.robots = takeRobots(yaml, source);
   take(yaml, source, "report", "the path of a file", parameters.report);
   take(yaml, source, "picture", "the path of a file", parameters.picture);
   takeBetween(yaml, source, "frame_rate", 0.01, 1e4, "hertz", parameters.frame_rate);
   takeBetween(yaml, source, "publish_rate", 0.01, 1e4, "hertz", parameters.publish_rate);
+  // tf keeps ten seconds.
+  takeBetween(yaml, source, "tf_delay", 0.0, 5.0, "seconds", parameters.tf_delay);
   takeBetween(yaml, source, "tf_timeout", 0.001, 1e6, "seconds", parameters.tf_timeout);
+  takeBetween(yaml, source, "max_body_speed", 1e-3, 1e6, "metres a second", parameters.max_body_speed);
   std::string sand_frame;
   take(yaml, source, "sand_frame", "the name of a tf frame", sand_frame);
   std::string scene_folder;

@@ -22,7 +22,13 @@ constexpr std::size_t kMostCellsShown = 4000000;
 }  // namespace
 
 SandNode::SandNode()
-    : parameters_(readNodeParameters(private_node_)), simulator_(buildSimulator(parameters_.scene)) {
+    : parameters_(readNodeParameters(private_node_)),
+      simulator_(buildSimulator(parameters_.scene)),
+      bodies_(parameters_, transforms_, simulator_),
+      services_(parameters_.scene.parameters.grid.frame, simulator_.grid().spacing, bodies_) {
+  for (const RobotParameters& robot : parameters_.robots) {
+    robots_.emplace_back(robot, parameters_.robots.size() == 1, simulator_.grid().spacing);
+  }
   points_ = private_node_.advertise<sensor_msgs::PointCloud2>("points", 1, true);
   mesh_ = private_node_.advertise<visualization_msgs::Marker>("mesh", 1, true);
   status_ = private_node_.advertise<Status>("status", 1, true);
@@ -34,90 +40,73 @@ SandNode::SandNode()
 
 void SandNode::run() {
   ros::WallRate rate(parameters_.frame_rate);
-  const ros::Duration surface_period(1.0 / parameters_.publish_rate);
+  const ros::Duration delay(parameters_.tf_delay);
   while (ros::ok()) {
     ros::spinOnce();
+    services_.runPending();
     const ros::Time now = ros::Time::now();
-    if (now < last_frame_) {
-      ROS_WARN_STREAM("time went back by " << (last_frame_ - now).toSec()
-                                           << " s; the sand goes on from here");
-      last_frame_ = last_surface_ = last_status_ = last_search_ = ros::Time();
-      buffer_.clear();
-      if (robot_) robot_->restartClock();
-    }
-    if (!now.isZero()) {
-      if (!robot_) findRobot(now);
-      advance(now);
-      if (last_surface_.isZero() || now - last_surface_ >= surface_period) publishSurface(now);
-      if (last_status_.isZero() || now - last_status_ >= ros::Duration(1.0)) publishStatus(now);
-    }
+    if (now < last_now_) restart(last_now_ - now);
+    last_now_ = now;
+    // Simulated time starts at zero, and there is no time before that.
+    if (now.toSec() > parameters_.tf_delay) update(now - delay);
     rate.sleep();
   }
   writeResults();
 }
 
-void SandNode::findRobot(const ros::Time& now) {
-  if (!last_search_.isZero() && now - last_search_ < ros::Duration(1.0)) return;
-  last_search_ = now;
-  std::string urdf;
-  const std::string name = node_.resolveName(parameters_.robot_description);
-  if (!node_.getParam(name, urdf)) {
-    describe("parameter " + name +
-             " is not set; expected the URDF of a robot, as robot_state_publisher has it");
-    return;
-  }
-  if (urdf == refused_description_) return;
-  try {
-    robot_.emplace(urdf, parameters_, simulator_);
-    // Computing the distance fields took its time; the sand does not make up for it.
-    last_frame_ = ros::Time();
-  } catch (const InvalidParameter& error) {
-    refused_description_ = urdf;
-    describe("parameter " + name + ": " + error.what());
-  }
+void SandNode::restart(const ros::Duration& duration) {
+  ROS_WARN_STREAM("time went back by " << duration.toSec() << " s; the sand goes on from here, and bodies "
+                                       << "are put at their next poses");
+  last_frame_ = last_surface_ = last_status_ = ros::Time();
+  transforms_.restart();
+  bodies_.restartClock();
 }
 
-void SandNode::describe(const std::string& problem) {
-  if (problem != described_problem_) ROS_ERROR_STREAM(problem << "; no robot digs until it is there");
-  described_problem_ = problem;
+void SandNode::update(const ros::Time& time) {
+  for (Robot& robot : robots_) robot.update(node_, bodies_);
+  advance(time);
+  const ros::Duration surface_period(1.0 / parameters_.publish_rate);
+  if (last_surface_.isZero() || time - last_surface_ >= surface_period) publishSurface(time);
+  if (last_status_.isZero() || time - last_status_ >= ros::Duration(1.0)) publishStatus(time);
 }
 
-void SandNode::advance(const ros::Time& now) {
-  const double elapsed = last_frame_.isZero() ? 0.0 : (now - last_frame_).toSec();
-  last_frame_ = now;
+void SandNode::advance(const ros::Time& time) {
+  const double elapsed = last_frame_.isZero() ? 0.0 : (time - last_frame_).toSec();
+  last_frame_ = time;
   if (!(elapsed > 0.0)) return;
   const double frame = std::min(elapsed, kLongestFrame);
-  if (robot_) robot_->update(buffer_, now, simulator_.time() + frame, simulator_);
+  const double end = simulator_.time() + frame;
+  bodies_.update(time, frame, end);
   const ros::WallTime begin = ros::WallTime::now();
-  simulator_.advance(frame);
+  simulator_.advanceTo(end);
   busy_ += (ros::WallTime::now() - begin).toSec();
 }
 
-void SandNode::publishSurface(const ros::Time& now) {
+void SandNode::publishSurface(const ros::Time& time) {
   const std::string& frame = parameters_.scene.parameters.grid.frame;
   if (simulator_.grid().cells() > kMostCellsShown) {
     ROS_WARN_STREAM_ONCE(simulator_.grid().cells()
                          << " cells are more than a message can hold; ~points and ~mesh stay "
                          << "silent above " << kMostCellsShown);
-    last_surface_ = now;
+    last_surface_ = time;
     return;
   }
   const Fields fields = simulator_.fields();
-  points_.publish(toPointCloud(simulator_.grid(), fields, frame, now));
+  points_.publish(toPointCloud(simulator_.grid(), fields, frame, time));
   // A mesh takes forty bytes a corner: made only when somebody looks, or once, so that whoever comes later
   // sees sand.
   if (mesh_.getNumSubscribers() > 0 || last_surface_.isZero()) {
-    mesh_.publish(toMarker(simulator_.grid(), fields, frame, now));
+    mesh_.publish(toMarker(simulator_.grid(), fields, frame, time));
   }
-  last_surface_ = now;
+  last_surface_ = time;
 }
 
-void SandNode::publishStatus(const ros::Time& now) {
+void SandNode::publishStatus(const ros::Time& time) {
   const Ledger ledger = simulator_.ledger();
   const ros::WallTime wall = ros::WallTime::now();
   const double wall_elapsed = (wall - last_status_wall_).toSec();
   Status status;
-  status.header.stamp = now;
+  status.header.stamp = time;
   status.header.frame_id = parameters_.scene.parameters.grid.frame;
   status.backend = toString(simulator_.backend());
   status.simulated_time = simulator_.time();
@@ -133,9 +122,9 @@ void SandNode::publishStatus(const ros::Time& now) {
   status.volume = ledger.now;
   status.volume_error = ledger.error();
   status.body_overlap = simulator_.bodyOverlap();
-  if (robot_) status.bodies = robot_->status();
+  status.bodies = bodies_.status();
   status_.publish(status);
-  last_status_ = now;
+  last_status_ = time;
   last_status_wall_ = wall;
   last_status_simulated_ = simulator_.time();
 }

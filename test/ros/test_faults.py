@@ -1,69 +1,16 @@
 #!/usr/bin/python3
 """What goes wrong is said in one clear line, and the node lives on, or ends with exit code 2 if it cannot start."""
-import subprocess
+import os
+import struct
 import tempfile
 import unittest
 
 import rospy
 import rostest
-from roslib.packages import find_node
-from shallow_sand.msg import BodyStatus, Status
+from sand_test import SCENE, RunningNode, link, robot
+from shallow_sand.msg import BodyStatus
 
-SCENE = {
-    "grid": {"size": [1.0, 1.0], "spacing": 0.05, "frame": "sand"},
-    "sand": [{"depth": 0.1}],
-    "backend": "cpu",
-    "threads": 1,
-    "tf_timeout": 0.5,
-}
-URDF = """<robot name="ghost_robot"><link name="ghost"><collision><geometry><box size="0.2 0.2 0.2"/></geometry>
-</collision></link></robot>"""
-
-
-class RunningNode:
-    """sand_node as a child process; what it writes to its standard error is kept in a file."""
-
-    def __init__(self, name, parameters):
-        self.name = "/" + name
-        if rospy.has_param(self.name):
-            rospy.delete_param(self.name)
-        rospy.set_param(self.name, parameters)
-        self.errors = tempfile.NamedTemporaryFile("w+", suffix=".log")
-        self.process = subprocess.Popen(
-            [find_node("shallow_sand", "sand_node")[0], "__name:=" + name],
-            stdout=subprocess.DEVNULL,
-            stderr=self.errors,
-        )
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        if self.process.poll() is None:
-            self.process.terminate()
-        self.process.wait(timeout=20)
-        self.errors.close()
-
-    def error_lines(self):
-        with open(self.errors.name) as log:
-            return [line for line in log.read().splitlines() if line.strip()]
-
-    def wait_for_error(self, *words, limit=20.0):
-        deadline = rospy.Time.now() + rospy.Duration(limit)
-        while rospy.Time.now() < deadline:
-            lines = [line for line in self.error_lines() if all(word in line for word in words)]
-            if lines:
-                return lines
-            rospy.sleep(0.05)
-        raise AssertionError("no line with %s within %g s, only %s" % (words, limit, self.error_lines()))
-
-    def status(self, condition=lambda status: True, limit=20.0):
-        deadline = rospy.Time.now() + rospy.Duration(limit)
-        while rospy.Time.now() < deadline:
-            status = rospy.wait_for_message(self.name + "/status", Status, timeout=limit)
-            if condition(status):
-                return status
-        raise AssertionError("no such status within %g s; the last was %s" % (limit, status))
+URDF = robot("ghost_robot", link("ghost"))
 
 
 class Faults(unittest.TestCase):
@@ -71,29 +18,49 @@ class Faults(unittest.TestCase):
         if rospy.has_param("/robot_description"):
             rospy.delete_param("/robot_description")
 
-    def assert_alive(self, node):
-        before = node.status().simulated_time
-        node.status(lambda status: status.simulated_time > before)
-
     def test_missing_robot_description_then_missing_tf(self):
         with RunningNode("no_robot", SCENE) as node:
             lines = node.wait_for_error("/robot_description", "URDF")
             self.assertEqual(len(lines), 1)
-            self.assert_alive(node)
+            node.assert_well(self)
             # It comes later; its link never gets a pose.
             rospy.set_param("/robot_description", URDF)
             node.wait_for_error("link ghost", "tf frame ghost", "frame sand")
             waiting = node.status(lambda status: any(body.problem for body in status.bodies))
             self.assertEqual([body.state for body in waiting.bodies], [BodyStatus.WAITING])
-            self.assert_alive(node)
+            node.assert_well(self)
             self.assertEqual(len(node.wait_for_error("link ghost")), 1, "said more than once")
 
     def test_broken_robot_description(self):
         rospy.set_param("/robot_description", "<robot name='broken'>")
         with RunningNode("broken_robot", SCENE) as node:
             self.assertEqual(len(node.wait_for_error("/robot_description")), 1)
-            self.assert_alive(node)
+            node.assert_well(self)
             self.assertEqual(len(node.wait_for_error("/robot_description")), 1, "said more than once")
+
+    def test_bad_meshes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            contents = {
+                "empty": b"",
+                "text": b"This is no mesh.\n" * 100,
+                # A binary STL that promises four thousand million triangles and holds one.
+                "promise": bytes(80) + struct.pack("<I", 4000000000) + bytes(50),
+            }
+            for name, content in contents.items():
+                with open(os.path.join(folder, name + ".stl"), "wb") as file:
+                    file.write(content)
+            names = ["missing"] + list(contents)
+            links = [link(name, f'<mesh filename="file://{folder}/{name}.stl"/>') for name in names]
+            links += [link("huge", '<box size="1e6 1e6 1e6"/>'), link("good")]
+            rospy.set_param("/robot_description", robot("patchwork", *links))
+            with RunningNode("meshes", SCENE) as node:
+                status = node.status(lambda status: status.bodies)
+                self.assertEqual([body.name for body in status.bodies], ["good"])
+                for name in names:
+                    self.assertEqual(len(node.wait_for_error(f"'{name}'", name + ".stl", "left out")), 1, name)
+                self.assertEqual(len(node.wait_for_error("link huge", "left out", "samples")), 1)
+                node.assert_well(self)
+                self.assertEqual(len(node.error_lines("left out")), len(names) + 1, node.error_lines())
 
     def expect_refusal(self, name, changes, *words):
         with RunningNode(name, dict(SCENE, **changes)) as node:
@@ -107,6 +74,15 @@ class Faults(unittest.TestCase):
         self.expect_refusal("angle", {"material": {"friction_angle": 95.0}}, "material.friction_angle", "95")
         self.expect_refusal("typo", {"sands": []}, "sands", "sand")
         self.expect_refusal("rate", {"frame_rate": -1.0}, "frame_rate", "hertz")
+        self.expect_refusal("delay", {"tf_delay": 60.0}, "tf_delay", "seconds", "60")
+        self.expect_refusal("pattern", {"include": "bucket"}, "include", "bucket", "list of patterns")
+        self.expect_refusal("no_list", {"robots": "r2d2"}, "robots", "r2d2", "list of maps")
+        self.expect_refusal("no_map", {"robots": ["r2d2"]}, "robots[0]", "r2d2", "map")
+        self.expect_refusal("no_description", {"robots": [{"name": "a"}]}, "robots[0]", "description", "missing")
+        self.expect_refusal("key", {"robots": [{"description": "a", "prefix": "b"}]}, "robots[0]", "prefix", "tf_prefix")
+        twice = {"description": "a", "name": "b"}
+        self.expect_refusal("twice", {"robots": [twice, twice]}, "robots[1]", "name", "no other robot")
+        self.expect_refusal("both", {"robots": [twice], "tf_prefix": "c"}, "robots", "tf_prefix")
 
 
 if __name__ == "__main__":

@@ -3,21 +3,32 @@
 #include <ros/node_handle.h>
 
 #include <string>
+#include <vector>
 
+#include "shallow_sand/bodies/link_selection.h"
 #include "shallow_sand/scene/scene.h"
 
 namespace shallow_sand {
 
+/// A robot whose links dig. An element of ~robots, or ~robot_description and its company.
+struct RobotParameters {
+  std::string description = "robot_description";  ///< name of the parameter with the URDF
+  std::string name;       ///< in ~status and the log; empty: tf_prefix without its slash, else the URDF's
+  std::string tf_prefix;  ///< put before link names to get their tf frames
+  LinkPatterns links;     ///< which of them
+};
+
 /// All private parameters of sand_node.
 struct NodeParameters {
-  Scene scene;                                          ///< from the keys of a scene file
-  std::string robot_description = "robot_description";  ///< name of the parameter with the URDF
-  std::string tf_prefix;                                ///< put before link names to get their tf frames
-  double frame_rate = 50.0;   ///< at which poses are taken and the sand runs on [Hz]
-  double publish_rate = 5.0;  ///< of ~points and ~mesh [Hz]
-  double tf_timeout = 1.0;    ///< older poses are stale [s]
-  std::string report;         ///< file for the figures at the end; empty: none
-  std::string picture;        ///< file for a shaded relief at the end; empty: none
+  Scene scene;                          ///< from the keys of a scene file
+  std::vector<RobotParameters> robots;  ///< at least one
+  double frame_rate = 50.0;             ///< at which poses are taken and the sand runs on [Hz]
+  double publish_rate = 5.0;            ///< of ~points and ~mesh [Hz]
+  double tf_delay = 0.1;         ///< of the sand behind ROS time, so that the poses it needs have come [s]
+  double tf_timeout = 1.0;       ///< older poses are stale [s]
+  double max_body_speed = 10.0;  ///< of a body's farthest point; what is faster is a jump [m/s]
+  std::string report;            ///< file for the figures at the end; empty: none
+  std::string picture;           ///< file for a shaded relief at the end; empty: none
 };
 
 /// Reads and checks the private parameters. @throws SceneError naming the parameter

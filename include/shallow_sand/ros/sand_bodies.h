@@ -1,0 +1,108 @@
+#pragma once
+
+#include <ros/time.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "shallow_sand/BodyStatus.h"
+#include "shallow_sand/bodies/distance_field.h"
+#include "shallow_sand/bodies/motion.h"
+#include "shallow_sand/bodies/pose_track.h"
+#include "shallow_sand/ros/body_news.h"
+#include "shallow_sand/ros/node_parameters.h"
+#include "shallow_sand/ros/transform_reader.h"
+#include "shallow_sand/sim/simulator.h"
+
+namespace shallow_sand {
+
+/// A triangle mesh as the sand sees it. @throws InvalidParameter if the mesh cannot be sampled
+std::shared_ptr<const DistanceField> bodyField(const TriangleMesh& mesh, double sand_spacing);
+
+/// What moves a body that follows tf.
+struct TfFrame {
+  std::string name;
+  Eigen::Isometry3d offset = Eigen::Isometry3d::Identity();  ///< of the body in that frame
+};
+
+/// All bodies of a simulator by name: those of the scene, robots' links, and those that services add. Takes
+/// poses of those that follow tf. A body whose pose cannot be had rests where it was last seen, or stays out
+/// of the sand; the log tells of every change once.
+class SandBodies {
+ public:
+  /// @param simulator built from the scene of `parameters`, so that its bodies are there. Simulator and
+  /// transforms must outlive this.
+  SandBodies(const NodeParameters& parameters, const TransformReader& transforms, Simulator& simulator);
+
+  bool has(const std::string& name) const;
+  /// @throws InvalidParameter if the name is taken or empty; so do the next two
+  void requireFree(const std::string& name) const;
+  /// Adds a body that follows tf. @param robot whose link it is; empty: none
+  void addFollowing(const std::string& name, const std::string& robot, const TfFrame& frame,
+                    std::shared_ptr<const DistanceField> field);
+  /// Adds a body that rests at a pose in the sand's frame.
+  void addPlaced(const std::string& name, const Eigen::Isometry3d& pose,
+                 std::shared_ptr<const DistanceField> field);
+  /// @throws InvalidParameter if there is no such body
+  void remove(const std::string& name);
+  /// Moves a body that follows no tf frame to a pose in the sand's frame within a duration [s, simulated];
+  /// 0: puts it there. @throws InvalidParameter if there is no such body, it follows tf, or would be too fast
+  void move(const std::string& name, const Eigen::Isometry3d& pose, double duration);
+  /// Where tf has a frame now, in the sand's. @throws tf2::TransformException
+  Eigen::Isometry3d poseOf(const std::string& frame) const;
+
+  /// Tells the simulator where bodies go in the frame that ends at ROS time `end` and simulated time
+  /// `simulated_end` [s], and that is `duration` [s] long.
+  void update(const ros::Time& end, double duration, double simulated_end);
+  /// To be called when ROS time went backwards: bodies that follow tf are put at their next poses.
+  void restartClock();
+
+  std::vector<BodyStatus> status() const;
+
+ private:
+  struct Following {
+    TfFrame frame;
+    PoseTrack track;
+    ros::Time failing;        ///< since when its pose cannot be had; zero: it can
+    bool in_sand = false;     ///< it has had a pose
+    ros::WallTime told_jump;  ///< when the log last told of a jump
+  };
+  struct Body {
+    std::size_t number;  ///< of the simulator
+    Eigen::AlignedBox3d box;
+    std::optional<Following> following;
+    Motion motion;  ///< of a body that follows no frame; simulated time
+    BodyStatus status;
+  };
+  Body& add(const std::string& name, const std::shared_ptr<const DistanceField>& field);
+  std::size_t indexOf(const std::string& name) const;
+  void follow(Body& body, const FrameTimes& times, const ros::Time& now);
+  void apply(Body& body, const Movement& movement);
+  void noteLate(const Body& body, double late);
+  void tellLate();
+  void report(Body& body, std::uint8_t state, const std::string& problem);
+  Eigen::Isometry3d lookUp(const TfFrame& frame, const ros::Time& time) const;
+
+  std::string sand_frame_;
+  double tf_delay_;
+  double tf_timeout_;
+  double max_body_speed_;
+  const TransformReader& transforms_;
+  Simulator& simulator_;
+  std::vector<Body> bodies_;
+  ros::Time origin_;  ///< of the times given to tracks: as seconds since 1970 they would be too coarse
+  ros::Time last_end_;
+  ros::Time leapt_;  ///< when time last went on by more than ~tf_timeout from one frame to the next
+  BodyNews news_;
+  struct {
+    double most = 0.0;      ///< [s]
+    std::string frame;      ///< of tf, that was that late
+    int count = 0;          ///< frames of the sand in which poses were too late
+    bool in_frame = false;  ///< this one is among them
+    ros::WallTime told;
+  } late_;  ///< since it was told last
+};
+
+}  // namespace shallow_sand
