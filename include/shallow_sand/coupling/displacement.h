@@ -213,7 +213,7 @@ struct DisplaceSand {
           pushedAside(below.hv, below.h, verticalVelocity(i, j + 1) - verticalVelocity(i, j - 1), spacing);
     }
     if (closed) below = {below.h, 0.0f, 0.0f};
-    columns.closed[at] = closed ? 1 : 0;
+    columns.cover[at] = closed ? Cover::touching : (covered ? Cover::hanging : Cover::none);
     columns.visible.set(at, closed ? above : below);
     columns.hidden.set(at, closed ? below : above);
     columns.visible_bed[at] = closed ? contact.top[at] : bed[at];
@@ -252,7 +252,7 @@ struct ContactSpeed {
       speed = maximum(maximum(fabsf(contact.velocity_x[at]), fabsf(contact.velocity_y[at])),
                       fabsf(contact.velocity_z[at]));
     }
-    if (columns.closed[at] != 0 || !(load.h > 0.0f)) return speed;
+    if (columns.cover[at] != Cover::hanging || !(load.h > 0.0f)) return speed;
     const LocalMaterial material =
         layer_depth == nullptr ? sand.uniform : LocalMaterial{0.0f, layer_fraction[at], layer_depth[at]};
     const float inverse = inverseDepth(load.h, sand);
