@@ -10,6 +10,7 @@
 #include "shallow_sand/coupling/drag.h"
 #include "shallow_sand/coupling/flow_loads.h"
 #include "shallow_sand/coupling/meet_bodies.h"
+#include "shallow_sand/coupling/pushed_sand.h"
 #include "shallow_sand/sim/engine.h"
 #include "shallow_sand/solver/change_sand.h"
 
@@ -211,6 +212,7 @@ class EngineOn : public Engine {
           swept(bed.size()),
           hidden(bed.size()),
           next_hidden(bed.size()),
+          pushed(bed.size()),
           visible_bed(uploaded(downloaded(bed))),
           ceiling(bed.size(), std::numeric_limits<float>::infinity()),
           cover(bed.size(), Cover::none),
@@ -226,6 +228,7 @@ class EngineOn : public Engine {
     Memory<std::uint8_t> swept;
     State hidden;
     State next_hidden;
+    State pushed;
     Memory<float> visible_bed;
     Memory<float> ceiling;
     Memory<Cover> cover;
@@ -245,8 +248,26 @@ class EngineOn : public Engine {
                           DistanceAlongColumns{contact().clearance, ground.depth, distance, grid_.columns,
                                                grid_.spacing, window});
     executor_.forEachCell(Window::line(window.rows()), DistanceAlongRows{distance, grid_.columns, window});
+    const SandLayer pushed = layer(contacts_.front().pushed);
     executor_.forEachCell(window, DisplaceSand{contact(), distance, ground, load, bed_.data(), columns(),
-                                               grid_.columns, grid_.spacing, window});
+                                               pushed, grid_.columns, grid_.spacing, window});
+    std::vector<Window> reached = executor_.partsWith(window, PushedDepth{pushed.depth, grid_.columns});
+    for (Window& part : reached) part = part.grown(kPassesOfPushedSand, grid_);
+    for (const Window& part : withoutOverlap(reached)) layPushedSand(part, pushed);
+  }
+
+  /// `pushed` is 0 around what can come into the window, and everywhere in it afterwards.
+  void layPushedSand(const Window& window, const SandLayer& pushed) {
+    stepper_.touch(window);
+    const SandLayer spare = layer(next_);
+    const float* repose_rise = repose_rise_.size() == 0 ? nullptr : repose_rise_.data();
+    const LowerPushedSand there{columns(), repose_rise, sand_, pushed, spare, grid_.columns, window};
+    const LowerPushedSand back{columns(), repose_rise, sand_, spare, pushed, grid_.columns, window};
+    for (int pass = 0; pass < kPassesOfPushedSand; pass += 2) {
+      executor_.forEachCell(window, there);
+      executor_.forEachCell(window, back);
+    }
+    executor_.forEachCell(window, LayPushedSand{columns(), pushed, grid_.columns});
   }
 
   void drag(const BodyBins& bins) {
@@ -418,6 +439,8 @@ class EngineOn : public Engine {
     step.setTimeStep(dt);
     return step;
   }
+
+  static constexpr int kPassesOfPushedSand = 8;  ///< even
 
   static double sum(const Memory<double>& memory) {
     const std::vector<double> values = downloaded(memory);
