@@ -14,6 +14,11 @@ namespace {
 constexpr double kMostSamples = 1 << 24;
 constexpr double kMargin = 5.0;  ///< samples around the mesh, at most, for what it grows by
 constexpr double kWorthTelling = 0.01;
+/// In cells, or in two spacings where these are larger. The distance has a kink in the middle of a sheet, and
+/// interpolation moves the zero towards it where both lie in one cube of samples: with the zero k spacings
+/// off the kink and corners at −a and √3 − a spacings from it, by 2a(√3 − k − a)/(√3 − 2a). For k = 1.155
+/// that is at most 0.155, and a whole cell is left.
+constexpr double kSheetThickness = 1.155;
 
 Eigen::Vector3d extentOf(const TriangleMesh& mesh) {
   Eigen::AlignedBox3d box;
@@ -76,7 +81,7 @@ BodyGeometry makeBodyGeometry(const TriangleMesh& mesh, double sand_spacing,
   const TriangleMesh solid = enclosingMesh(mesh, options.shape);
   Sampling sampling;
   sampling.spacing = distanceSpacing(solid, sand_spacing);
-  sampling.least_thickness = std::max(sand_spacing, 2.0 * sampling.spacing);
+  sampling.least_thickness = kSheetThickness * std::max(sand_spacing, 2.0 * sampling.spacing);
   sampling.progress = options.progress;
   BodyGeometry geometry;
   SampledMesh sampled;

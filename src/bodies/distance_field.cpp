@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "missing_thickness.h"
@@ -22,9 +23,10 @@ constexpr double kExactReach = 2.0;  ///< distances up to this many spacings are
 constexpr int kBlockSize = 16;       ///< samples along the edge of a block that one thread fills
 constexpr double kMostSamples = 1 << 27;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kProbes = 12;     ///< along each axis, of the winding number
-constexpr double kDeep = 0.5;   ///< of the way to the surface
-constexpr double kDoubt = 0.2;  ///< a winding number that is farther from a whole one is in doubt
+constexpr int kProbes = 12;          ///< along each axis, of the winding number
+constexpr double kDeep = 0.5;        ///< of the way to the surface
+constexpr double kMostDrift = 0.05;  ///< of a winding number that stands for all of a block near the surface
+constexpr double kDoubt = 0.2;       ///< a winding number that is farther from a whole one is in doubt
 
 bool isDoubtful(double winding) { return std::abs(winding - std::round(winding)) > kDoubt; }
 
@@ -93,53 +95,58 @@ class Sampler {
         middle_(field.origin + field.spacing * middle_sample_.cast<double>().matrix()),
         field_(field) {}
 
-  void fill(const Block& block) const { fill(block, kInfinity, {false, 0.0}); }
+  void fill(const Block& block) const { fill(block, kInfinity, std::nullopt); }
   /// Of the samples next to the surface, the share at which it was moved.
   double thickened() const {
     return near_ > 0 ? static_cast<double>(moved_) / static_cast<double>(near_) : 0.0;
   }
 
  private:
-  /// Of a block: whether all of it lies on one side, and then a winding number that is right for that.
-  struct Side {
-    bool known;
-    double winding;
-  };
   static bool isInside(double winding) { return std::abs(winding) > 0.5; }
 
   /// `bound`: a length known to be no shorter than the distance at the block's middle [m].
-  void fill(const Block& block, double bound, Side side) const {
+  /// `winding`: a number that is right for all of the block, where there is one.
+  void fill(const Block& block, double bound, std::optional<double> winding) const {
     const Eigen::Vector3d middle = position(block.middle());
     const TriangleSurface::Nearest nearest = surface_.nearest(middle, bound);
     if (block.single()) {
-      storeSample(block, middle, nearest, side.known ? side.winding : surface_.windingNumber(middle));
+      storeSample(block, middle, nearest, winding ? *winding : surface_.windingNumber(middle));
       return;
     }
-    const double half_diagonal = field_.spacing * block.halfDiagonal().norm();
-    if (!side.known) side = sideOf(middle, half_diagonal, nearest.distance);
-    if (nearest.distance - half_diagonal >= reach_) {
-      storeBound(block, middle, nearest.distance, side);
+    const double radius = field_.spacing * block.halfDiagonal().norm();
+    const bool near = nearest.distance - radius < reach_;
+    if (!winding) winding = windingOfAll(middle, radius, nearest.distance, near);
+    if (winding && !near) {
+      storeBound(block, middle, nearest.distance, isInside(*winding));
       return;
     }
-    for (const Block& part : cut(block)) {
+    const std::vector<Block> parts = cut(block);
+    std::vector<Eigen::Vector3d> middles;
+    for (const Block& part : parts) middles.push_back(position(part.middle()));
+    // The last cut leaves single samples, which need a number each and lie together.
+    std::vector<double> windings;
+    if (!winding && block.size.maxCoeff() <= 3) windings = surface_.windingNumbers(middles);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
       // The small excess keeps rounding from cutting off the true distance.
-      const double way = (position(part.middle()) - middle).norm();
-      fill(part, (nearest.distance + way) * (1.0 + 1e-9), side);
+      const double way = (middles[i] - middle).norm() * (1.0 + 1e-9);
+      fill(parts[i], nearest.distance * (1.0 + 1e-9) + way, windings.empty() ? winding : windings[i]);
     }
   }
 
-  /// Of everything within `radius` of `middle`, if one winding number can tell. A closed mesh has one off its
-  /// surface. That of an open one changes, but it is a harmonic function there: it does not come from near a
-  /// whole number to ½ within half the way to the surface, unless it is far from whole numbers beyond.
-  Side sideOf(const Eigen::Vector3d& middle, double radius, double distance) const {
-    const double clearance = distance - radius;
-    if (clearance <= 0.0) return {false, 0.0};
-    const double change = kWindingError + radius * surface_.windingGradient(clearance);
-    const bool deep = radius <= kDeep * distance;
-    if (change >= 0.5 && !deep) return {false, 0.0};
+  /// Of everything within `radius` of `middle`, if one winding number can tell the side and, near the
+  /// surface, also how thick the solid is. A closed mesh has one off its surface. That of an open one
+  /// changes, but it is a harmonic function there: it does not come from near a whole number to ½ within half
+  /// the way to the surface, unless it is far from whole numbers beyond.
+  std::optional<double> windingOfAll(const Eigen::Vector3d& middle, double radius, double distance,
+                                     bool near) const {
+    if (distance <= radius) return std::nullopt;
+    const bool deep = !near && radius <= kDeep * distance;
+    const double change = radius * surface_.windingGradient(middle, radius);
+    if (!deep && change > (near ? kMostDrift : 0.5 - kWindingError)) return std::nullopt;
     const double winding = surface_.windingNumber(middle);
     const double off_half = std::abs(std::abs(winding) - 0.5);
-    return {off_half >= change || (deep && off_half >= 0.5 - kDoubt), winding};
+    if (off_half >= kWindingError + change || (deep && off_half >= 0.5 - kDoubt)) return winding;
+    return std::nullopt;
   }
 
   void storeSample(const Block& block, const Eigen::Vector3d& point, const TriangleSurface::Nearest& nearest,
@@ -159,15 +166,12 @@ class Sampler {
   }
 
   /// Nowhere does the distance change faster than the position does.
-  void storeBound(const Block& block, const Eigen::Vector3d& middle, double distance,
-                  const Side& side) const {
+  void storeBound(const Block& block, const Eigen::Vector3d& middle, double distance, bool inside) const {
     const Eigen::Array3i end = block.first + block.size;
     for (int k = block.first.z(); k < end.z(); ++k) {
       for (int j = block.first.y(); j < end.y(); ++j) {
         for (int i = block.first.x(); i < end.x(); ++i) {
-          const Eigen::Vector3d point = position(Eigen::Vector3d(i, j, k));
-          const double length = distance - (point - middle).norm();
-          const bool inside = isInside(side.known ? side.winding : surface_.windingNumber(point));
+          const double length = distance - (position(Eigen::Vector3d(i, j, k)) - middle).norm();
           at(i, j, k) = static_cast<float>(inside ? -length : length - least_thickness_ / 2.0);
         }
       }

@@ -79,6 +79,10 @@ double missingThickness(const TriangleSurface& surface, const Eigen::Vector3d& p
   }
   const bool outside = std::abs(winding) <= 0.5;
   const Eigen::Vector3d into = normal.dot(outside ? foot - point : point - foot) >= 0.0 ? normal : -normal;
+  // Off an open mesh the number is another than at its surface: behind a sheet it comes up to ½ only there.
+  if (std::abs(winding - std::round(winding)) > kWindingError) {
+    winding = surface.windingNumber(foot + (outside ? -kOffset : kOffset) * least * into);
+  }
   return least - thickness(surface, foot, into, outside, winding, least);
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include "shallow_sand/core/parameters.h"
@@ -19,6 +20,7 @@ constexpr double kPi = 3.14159265358979323846;
 /// on a sphere, 0.04 on a bowl, 0.1 on four spheres in one another, 0.006 on loose triangles; three radii
 /// halve that and cost more.
 constexpr double kFarInRadii = 2.0;
+constexpr int kTogether = 8;    ///< points whose winding numbers are computed at once
 constexpr double kTie = 1e-12;  ///< relative; squared distances that differ by less are the same
 
 using Model = fcl::BVHModel<fcl::AABB<double>>;
@@ -31,57 +33,135 @@ struct Moments {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();       ///< weighted by area
   Eigen::Vector3d area_vector = Eigen::Vector3d::Zero();  ///< Σ area·normal
   Eigen::Matrix3d first = Eigen::Matrix3d::Zero();  ///< Σ (triangle's centre − centre)·(area·normal)ᵀ
+  double open_edges = 0.0;                          ///< length [m]
   double radius = 0.0;                              ///< no part of the surface is farther from `centre`
-
-  double solidAngle(const Eigen::Vector3d& point) const {
-    const Eigen::Vector3d away = centre - point;
-    const double inverse = 1.0 / away.squaredNorm();
-    const double inverse_cubed = inverse * std::sqrt(inverse);
-    return inverse_cubed * (area_vector.dot(away) + first.trace() - 3.0 * inverse * away.dot(first * away));
-  }
 };
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 
-/// A sum of angles as the angle of a product of complex numbers, which is quicker than an arc tangent each.
-class AngleSum {
- public:
-  /// Adds the angle of a + ib, from −π to π.
-  void add(double a, double b) {
-    const double product_real = real_ * a - imaginary_ * b;
-    const double product_imaginary = real_ * b + imaginary_ * a;
-    // Two angles of one half plane whose sum lies in the other one went past π.
-    if (imaginary_ >= 0.0 && b >= 0.0 && product_imaginary < 0.0) ++turns_;
-    if (imaginary_ < 0.0 && b < 0.0 && product_imaginary >= 0.0) --turns_;
-    const double size = std::abs(product_real) + std::abs(product_imaginary);
-    if (size > 1e-100 && size < 1e100) {
-      real_ = product_real;
-      imaginary_ = product_imaginary;
-    } else if (size > 0.0) {
-      real_ = product_real / size;
-      imaginary_ = product_imaginary / size;
-    }
-  }
-  double sum() const { return std::atan2(imaginary_, real_) + 2.0 * kPi * turns_; }
+/// Three plain numbers, of which the compiler makes loops that work on several points at once.
+struct Plain {
+  double x, y, z;
 
- private:
-  double real_ = 1.0;
-  double imaginary_ = 0.0;
-  int turns_ = 0;
+  explicit Plain(const Eigen::Vector3d& vector) : Plain(vector.x(), vector.y(), vector.z()) {}
+  Plain(double x, double y, double z) : x(x), y(y), z(z) {}
+  Plain operator-(const Plain& other) const { return {x - other.x, y - other.y, z - other.z}; }
+  double dot(const Plain& other) const { return x * other.x + y * other.y + z * other.z; }
+  double norm() const { return std::sqrt(dot(*this)); }
+  Plain cross(const Plain& other) const {
+    return {y * other.z - z * other.y, z * other.x - x * other.z, x * other.y - y * other.x};
+  }
 };
 
-/// Adds half the solid angle of a triangle: Van Oosterom and Strackee 1983. Positive when `point` is behind
-/// it.
-void addSolidAngle(const Corners& triangle, const Eigen::Vector3d& point, AngleSum& halves) {
-  const Eigen::Vector3d a = triangle[0] - point;
-  const Eigen::Vector3d b = triangle[1] - point;
-  const Eigen::Vector3d c = triangle[2] - point;
-  const double a_length = a.norm();
-  const double b_length = b.norm();
-  const double c_length = c.norm();
-  halves.add(a_length * b_length * c_length + a.dot(b) * c_length + b.dot(c) * a_length + c.dot(a) * b_length,
-             a.dot(b.cross(c)));
+#ifdef __x86_64__
+template <typename Work>
+__attribute__((target("avx2"), flatten)) void runAvx2(const Work& work) {
+  work();
 }
+#endif
+
+/// Runs loops on wider registers where the processor has them; the same bits either way.
+template <typename Work>
+void runWide(const Work& work) {
+#ifdef __x86_64__
+  static const bool has_avx2 = __builtin_cpu_supports("avx2") != 0;
+  if (has_avx2) return runAvx2(work);
+#endif
+  work();
+}
+
+/// What points that lie together see of the surface.
+template <int count>
+class Views {
+ public:
+  explicit Views(const Eigen::Vector3d* points) {
+    Eigen::AlignedBox3d box;
+    for (int i = 0; i < count; ++i) {
+      x_[i] = points[i].x();
+      y_[i] = points[i].y();
+      z_[i] = points[i].z();
+      real_[i] = 1.0;
+      box.extend(points[i]);
+    }
+    middle_ = box.center();
+    radius_ = box.diagonal().norm() / 2.0;
+  }
+
+  bool areFarFrom(const Moments& moments) const {
+    const double far = kFarInRadii * moments.radius + radius_;
+    return (moments.centre - middle_).squaredNorm() > far * far;
+  }
+
+  void addTriangle(const Corners& triangle) {
+    runWide([&] { multiplyBy(triangle); });
+    if (++factors_ % kFactors == 0) shrink();
+  }
+  void addSeries(const Moments& moments) {
+    runWide([&] { addToFar(moments); });
+  }
+
+  double windingNumber(int i) const {
+    return (far_[i] + 2.0 * std::atan2(imaginary_[i], real_[i]) + 4.0 * kPi * turns_[i]) / (4.0 * kPi);
+  }
+
+ private:
+  /// Half the solid angle of a triangle, Van Oosterom and Strackee 1983; positive for points behind it. A sum
+  /// of such angles is the angle of a product of complex numbers, which is quicker than an arc tangent each.
+  void multiplyBy(const Corners& triangle) {
+    const Plain first(triangle[0]), second(triangle[1]), third(triangle[2]);
+    for (int i = 0; i < count; ++i) {
+      const Plain point(x_[i], y_[i], z_[i]);
+      const Plain a = first - point;
+      const Plain b = second - point;
+      const Plain c = third - point;
+      const double a_length = a.norm();
+      const double b_length = b.norm();
+      const double c_length = c.norm();
+      double real =
+          a_length * b_length * c_length + a.dot(b) * c_length + b.dot(c) * a_length + c.dot(a) * b_length;
+      const double imaginary = a.dot(b.cross(c));
+      // On an edge or a corner there is no angle.
+      real = std::abs(real) + std::abs(imaginary) > 0.0 ? real : 1.0;
+      const double product_real = real_[i] * real - imaginary_[i] * imaginary;
+      const double product_imaginary = real_[i] * imaginary + imaginary_[i] * real;
+      // Two angles of one half plane whose sum lies in the other one went past π.
+      const double up = product_imaginary < 0.0 ? 1.0 : 0.0;
+      const double down = 1.0 - up;
+      turns_[i] += imaginary_[i] >= 0.0 ? (imaginary >= 0.0 ? up : 0.0) : (imaginary < 0.0 ? -down : 0.0);
+      real_[i] = product_real;
+      imaginary_[i] = product_imaginary;
+    }
+  }
+
+  void addToFar(const Moments& moments) {
+    const Plain centre(moments.centre), area(moments.area_vector);
+    const Plain row_x(moments.first.row(0)), row_y(moments.first.row(1)), row_z(moments.first.row(2));
+    const double trace = moments.first.trace();
+    for (int i = 0; i < count; ++i) {
+      const Plain away = centre - Plain(x_[i], y_[i], z_[i]);
+      const Plain turned(row_x.dot(away), row_y.dot(away), row_z.dot(away));
+      const double inverse = 1.0 / away.dot(away);
+      far_[i] += inverse * std::sqrt(inverse) * (area.dot(away) + trace - 3.0 * inverse * away.dot(turned));
+    }
+  }
+
+  static constexpr int kFactors = 4;  ///< of so many no product leaves the range of a double
+
+  void shrink() {
+    for (int i = 0; i < count; ++i) {
+      const double size = std::abs(real_[i]) + std::abs(imaginary_[i]);
+      real_[i] /= size;
+      imaginary_[i] /= size;
+    }
+  }
+
+  double x_[count], y_[count], z_[count];
+  double real_[count], imaginary_[count] = {}, turns_[count] = {};
+  double far_[count] = {};
+  int factors_ = 0;
+  Eigen::Vector3d middle_;
+  double radius_;  ///< no point is farther from the middle [m]
+};
 
 bool hasArea(const TriangleMesh& mesh, const std::array<int, 3>& triangle) {
   const Eigen::Vector3d& a = mesh.vertices[static_cast<std::size_t>(triangle[0])];
@@ -92,30 +172,47 @@ bool hasArea(const TriangleMesh& mesh, const std::array<int, 3>& triangle) {
   return u.cross(v).norm() > 1e-10 * std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()});
 }
 
-/// Edges at the same place cancel when they run in opposite directions.
-double lengthOfOpenEdges(const Model& model) {
-  using Edge = std::array<double, 6>;
-  std::vector<std::pair<Edge, int>> edges;
-  edges.reserve(3 * static_cast<std::size_t>(model.num_tris));
+/// A side of a triangle that is not cancelled by others at the same place which run the other way.
+struct OpenEdge {
+  int triangle;
+  int corner;  ///< that it starts from
+  int count;   ///< how many more run one way than the other
+};
+
+std::vector<OpenEdge> openEdgesOf(const Model& model) {
+  struct Side {
+    std::array<double, 6> place;  ///< the same for both directions
+    OpenEdge edge;                ///< count: the direction, 1 or −1
+  };
+  std::vector<Side> sides;
+  sides.reserve(3 * static_cast<std::size_t>(model.num_tris));
   for (int i = 0; i < model.num_tris; ++i) {
     for (int corner = 0; corner < 3; ++corner) {
       const Eigen::Vector3d& from = model.vertices[model.tri_indices[i][corner]];
       const Eigen::Vector3d& to = model.vertices[model.tri_indices[i][(corner + 1) % 3]];
-      const Edge there{from.x(), from.y(), from.z(), to.x(), to.y(), to.z()};
-      const Edge back{to.x(), to.y(), to.z(), from.x(), from.y(), from.z()};
-      edges.push_back({std::min(there, back), there < back ? 1 : -1});
+      const std::array<double, 6> there{from.x(), from.y(), from.z(), to.x(), to.y(), to.z()};
+      const std::array<double, 6> back{to.x(), to.y(), to.z(), from.x(), from.y(), from.z()};
+      sides.push_back({std::min(there, back), {i, corner, there < back ? 1 : -1}});
     }
   }
-  std::sort(edges.begin(), edges.end());
-  double length = 0.0;
-  for (auto first = edges.begin(); first != edges.end();) {
-    const Edge edge = first->first;
-    int count = 0;
-    for (; first != edges.end() && first->first == edge; ++first) count += first->second;
-    length +=
-        std::abs(count) * Eigen::Vector3d(edge[3] - edge[0], edge[4] - edge[1], edge[5] - edge[2]).norm();
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.place < b.place; });
+  std::vector<OpenEdge> open;
+  for (auto first = sides.begin(); first != sides.end();) {
+    OpenEdge edge = first->edge;
+    auto next = first + 1;
+    for (; next != sides.end() && next->place == first->place; ++next) edge.count += next->edge.count;
+    edge.count = std::abs(edge.count);
+    if (edge.count != 0) open.push_back(edge);
+    first = next;
   }
-  return length;
+  return open;
+}
+
+double squaredDistanceToEdge(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                             const Eigen::Vector3d& point) {
+  const Eigen::Vector3d along = to - from;
+  const double part = std::clamp((point - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (from + part * along - point).squaredNorm();
 }
 
 }  // namespace
@@ -127,10 +224,11 @@ struct TriangleSurface::Tree {
   explicit Tree(const TriangleMesh& mesh);
   void gatherMoments(int node);
 
-  Corners corners(int triangle) const {
-    const fcl::Triangle& indices = model.tri_indices[triangle];
-    return {model.vertices[indices[0]], model.vertices[indices[1]], model.vertices[indices[2]]};
-  }
+  bool isLeaf(int node) const { return model.getBV(node).first_child < 0; }
+  int triangleOf(int leaf) const { return -model.getBV(leaf).first_child - 1; }
+  int leftOf(int node) const { return model.getBV(node).first_child; }
+  int rightOf(int node) const { return model.getBV(node).first_child + 1; }
+  const Corners& corners(int triangle) const { return triangles[static_cast<std::size_t>(triangle)]; }
   const Moments& at(int node) const { return moments[static_cast<std::size_t>(node)]; }
   double squaredDistanceToBox(int node, const Eigen::Vector3d& point) const {
     const fcl::AABB<double>& box = model.getBV(node).bv;
@@ -145,22 +243,28 @@ struct TriangleSurface::Tree {
   };
   void nearest(int node, Search& search) const;
   void compare(int triangle, Search& search) const;
-  /// Of all triangles below `node`: of near ones into `halves`, of far ones as the result.
-  double solidAngle(int node, const Eigen::Vector3d& point, AngleSum& halves) const;
+  template <int count>
+  void look(int node, Views<count>& views) const;
 
   struct Ray {
     Eigen::Vector3d from;
     Eigen::Vector3d direction;
     double length;
+    Eigen::Vector3d inverse = direction.cwiseInverse();
   };
   bool meets(const Ray& ray, const fcl::AABB<double>& box) const;
   void cross(int node, const Ray& ray, std::vector<Crossing>& crossings) const;
   void crossTriangle(int triangle, const Ray& ray, std::vector<Crossing>& crossings) const;
 
+  /// At most ∫dl/r² along the open edges below `node`, r from anywhere within `radius` of `middle`. [1/m]
+  double openEdgesSeen(int node, const Eigen::Vector3d& middle, double radius) const;
+  double openEdgesOfLeafSeen(int triangle, const Eigen::Vector3d& middle, double radius) const;
+
   Model model;
+  std::vector<Corners> triangles;
   std::vector<Moments> moments;          ///< one a node
   std::vector<Eigen::Vector3d> normals;  ///< one a triangle
-  double open_edges = 0.0;               ///< [m]
+  std::vector<std::array<int, 3>> open;  ///< one a triangle: how often the edge from each corner is open
 };
 
 TriangleSurface::Tree::Tree(const TriangleMesh& mesh) {
@@ -175,31 +279,41 @@ TriangleSurface::Tree::Tree(const TriangleMesh& mesh) {
     throw InvalidParameter("mesh", "no triangle with an area", "at least one");
   }
   model.endModel();
+  for (int i = 0; i < model.num_tris; ++i) {
+    const fcl::Triangle& indices = model.tri_indices[i];
+    triangles.push_back({model.vertices[indices[0]], model.vertices[indices[1]], model.vertices[indices[2]]});
+  }
+  open.resize(static_cast<std::size_t>(model.num_tris), {0, 0, 0});
+  for (const OpenEdge& edge : openEdgesOf(model)) {
+    open[static_cast<std::size_t>(edge.triangle)][static_cast<std::size_t>(edge.corner)] = edge.count;
+  }
   moments.resize(static_cast<std::size_t>(model.getNumBVs()));
   gatherMoments(0);
   for (int i = 0; i < model.num_tris; ++i) {
-    const auto [a, b, c] = corners(i);
+    const auto& [a, b, c] = corners(i);
     normals.push_back((b - a).cross(c - a).normalized());
   }
-  open_edges = lengthOfOpenEdges(model);
 }
 
 void TriangleSurface::Tree::gatherMoments(int node) {
   const auto& tree = model.getBV(node);
   Moments& sum = moments[static_cast<std::size_t>(node)];
-  if (tree.isLeaf()) {
-    const auto [a, b, c] = corners(tree.primitiveId());
+  if (isLeaf(node)) {
+    const auto& [a, b, c] = corners(triangleOf(node));
     sum.area_vector = (b - a).cross(c - a) / 2.0;
     sum.area = sum.area_vector.norm();
     sum.centre = (a + b + c) / 3.0;
+    const std::array<int, 3>& counts = open[static_cast<std::size_t>(triangleOf(node))];
+    sum.open_edges = counts[0] * (b - a).norm() + counts[1] * (c - b).norm() + counts[2] * (a - c).norm();
     sum.radius = std::max({(a - sum.centre).norm(), (b - sum.centre).norm(), (c - sum.centre).norm()});
   } else {
-    gatherMoments(tree.leftChild());
-    gatherMoments(tree.rightChild());
-    const Moments& left = at(tree.leftChild());
-    const Moments& right = at(tree.rightChild());
+    gatherMoments(leftOf(node));
+    gatherMoments(rightOf(node));
+    const Moments& left = at(leftOf(node));
+    const Moments& right = at(rightOf(node));
     sum.area = left.area + right.area;
     sum.centre = (left.area * left.centre + right.area * right.centre) / sum.area;
+    sum.open_edges = left.open_edges + right.open_edges;
     sum.area_vector = left.area_vector + right.area_vector;
     sum.first = left.first + (left.centre - sum.centre) * left.area_vector.transpose() + right.first +
                 (right.centre - sum.centre) * right.area_vector.transpose();
@@ -211,7 +325,7 @@ void TriangleSurface::Tree::gatherMoments(int node) {
 }
 
 void TriangleSurface::Tree::compare(int triangle, Search& search) const {
-  const auto [a, b, c] = corners(triangle);
+  const auto& [a, b, c] = corners(triangle);
   const double squared = Project::projectTriangle(a, b, c, search.point).sqr_distance;
   if (squared > search.squared * (1.0 + kTie)) return;
   const double facing = std::abs(normals[static_cast<std::size_t>(triangle)].dot(search.point - a));
@@ -223,13 +337,12 @@ void TriangleSurface::Tree::compare(int triangle, Search& search) const {
 }
 
 void TriangleSurface::Tree::nearest(int node, Search& search) const {
-  const auto& tree = model.getBV(node);
-  if (tree.isLeaf()) {
-    compare(tree.primitiveId(), search);
+  if (isLeaf(node)) {
+    compare(triangleOf(node), search);
     return;
   }
-  int near = tree.leftChild();
-  int far = tree.rightChild();
+  int near = leftOf(node);
+  int far = rightOf(node);
   double to_near = squaredDistanceToBox(near, search.point);
   double to_far = squaredDistanceToBox(far, search.point);
   if (to_far < to_near) {
@@ -240,15 +353,16 @@ void TriangleSurface::Tree::nearest(int node, Search& search) const {
   if (to_far <= search.squared * (1.0 + kTie)) nearest(far, search);
 }
 
-double TriangleSurface::Tree::solidAngle(int node, const Eigen::Vector3d& point, AngleSum& halves) const {
-  const double far = kFarInRadii * at(node).radius;
-  const auto& tree = model.getBV(node);
-  if (tree.isLeaf()) {
-    addSolidAngle(corners(tree.primitiveId()), point, halves);
-    return 0.0;
+template <int count>
+void TriangleSurface::Tree::look(int node, Views<count>& views) const {
+  if (views.areFarFrom(at(node))) {
+    views.addSeries(at(node));
+  } else if (isLeaf(node)) {
+    views.addTriangle(corners(triangleOf(node)));
+  } else {
+    look(leftOf(node), views);
+    look(rightOf(node), views);
   }
-  if ((at(node).centre - point).squaredNorm() > far * far) return at(node).solidAngle(point);
-  return solidAngle(tree.leftChild(), point, halves) + solidAngle(tree.rightChild(), point, halves);
 }
 
 bool TriangleSurface::Tree::meets(const Ray& ray, const fcl::AABB<double>& box) const {
@@ -259,8 +373,8 @@ bool TriangleSurface::Tree::meets(const Ray& ray, const fcl::AABB<double>& box) 
       if (ray.from[axis] < box.min_[axis] || ray.from[axis] > box.max_[axis]) return false;
       continue;
     }
-    const double low = (box.min_[axis] - ray.from[axis]) / ray.direction[axis];
-    const double high = (box.max_[axis] - ray.from[axis]) / ray.direction[axis];
+    const double low = (box.min_[axis] - ray.from[axis]) * ray.inverse[axis];
+    const double high = (box.max_[axis] - ray.from[axis]) * ray.inverse[axis];
     enter = std::max(enter, std::min(low, high));
     leave = std::min(leave, std::max(low, high));
   }
@@ -269,7 +383,7 @@ bool TriangleSurface::Tree::meets(const Ray& ray, const fcl::AABB<double>& box) 
 
 void TriangleSurface::Tree::crossTriangle(int triangle, const Ray& ray,
                                           std::vector<Crossing>& crossings) const {
-  const auto [a, b, c] = corners(triangle);
+  const auto& [a, b, c] = corners(triangle);
   const double approach = -normals[static_cast<std::size_t>(triangle)].dot(ray.direction);
   if (std::abs(approach) < 1e-9) return;
   const double along = normals[static_cast<std::size_t>(triangle)].dot(ray.from - a) / approach;
@@ -289,12 +403,38 @@ void TriangleSurface::Tree::crossTriangle(int triangle, const Ray& ray,
 void TriangleSurface::Tree::cross(int node, const Ray& ray, std::vector<Crossing>& crossings) const {
   const auto& tree = model.getBV(node);
   if (!meets(ray, tree.bv)) return;
-  if (tree.isLeaf()) {
-    crossTriangle(tree.primitiveId(), ray, crossings);
+  if (isLeaf(node)) {
+    crossTriangle(triangleOf(node), ray, crossings);
     return;
   }
-  cross(tree.leftChild(), ray, crossings);
-  cross(tree.rightChild(), ray, crossings);
+  cross(leftOf(node), ray, crossings);
+  cross(rightOf(node), ray, crossings);
+}
+
+double TriangleSurface::Tree::openEdgesOfLeafSeen(int triangle, const Eigen::Vector3d& middle,
+                                                  double radius) const {
+  const Corners points = corners(triangle);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const int count = open[static_cast<std::size_t>(triangle)][i];
+    if (count == 0) continue;
+    const Eigen::Vector3d& from = points[i];
+    const Eigen::Vector3d& to = points[(i + 1) % 3];
+    const double clearance = std::sqrt(squaredDistanceToEdge(from, to, middle)) - radius;
+    if (clearance <= 0.0) return std::numeric_limits<double>::infinity();
+    // The second is that of an endless straight line.
+    sum += count * std::min((to - from).norm() / clearance, kPi) / clearance;
+  }
+  return sum;
+}
+
+double TriangleSurface::Tree::openEdgesSeen(int node, const Eigen::Vector3d& middle, double radius) const {
+  const double length = at(node).open_edges;
+  if (length == 0.0) return 0.0;
+  if (isLeaf(node)) return openEdgesOfLeafSeen(triangleOf(node), middle, radius);
+  const double clearance = std::sqrt(squaredDistanceToBox(node, middle)) - radius;
+  if (clearance > at(node).radius) return length / (clearance * clearance);
+  return openEdgesSeen(leftOf(node), middle, radius) + openEdgesSeen(rightOf(node), middle, radius);
 }
 
 TriangleSurface::TriangleSurface(const TriangleMesh& mesh) : tree_(std::make_unique<const Tree>(mesh)) {}
@@ -317,22 +457,35 @@ const Eigen::Vector3d& TriangleSurface::normal(int triangle) const {
 }
 
 double TriangleSurface::windingNumber(const Eigen::Vector3d& point) const {
-  AngleSum halves;
-  const double far = tree_->solidAngle(0, point, halves);
-  return (far + 2.0 * halves.sum()) / (4.0 * kPi);
+  Views<1> view(&point);
+  tree_->look(0, view);
+  return view.windingNumber(0);
 }
 
-double TriangleSurface::windingGradient(double clearance) const {
-  return tree_->open_edges / (4.0 * kPi * clearance * clearance);
+std::vector<double> TriangleSurface::windingNumbers(std::vector<Eigen::Vector3d> points) const {
+  const std::size_t asked = points.size();
+  points.resize((asked + kTogether - 1) / kTogether * kTogether, points.back());
+  std::vector<double> numbers;
+  for (std::size_t first = 0; first < points.size(); first += kTogether) {
+    Views<kTogether> views(&points[first]);
+    tree_->look(0, views);
+    for (int i = 0; i < kTogether; ++i) numbers.push_back(views.windingNumber(i));
+  }
+  numbers.resize(asked);
+  return numbers;
 }
 
-double TriangleSurface::openEdges() const { return tree_->open_edges; }
+double TriangleSurface::windingGradient(const Eigen::Vector3d& middle, double radius) const {
+  return tree_->openEdgesSeen(0, middle, radius) / (4.0 * kPi);
+}
+
+double TriangleSurface::openEdges() const { return tree_->at(0).open_edges; }
 
 std::vector<TriangleSurface::Crossing> TriangleSurface::crossings(const Eigen::Vector3d& from,
                                                                   const Eigen::Vector3d& direction,
                                                                   double length) const {
   std::vector<Crossing> found;
-  tree_->cross(0, {from, direction, length}, found);
+  tree_->cross(0, Tree::Ray{from, direction, length}, found);
   std::sort(found.begin(), found.end(),
             [](const Crossing& a, const Crossing& b) { return a.along < b.along; });
   return found;

@@ -32,11 +32,14 @@ class TriangleSurface {
 
   /// How often the surface goes round `point`, after Jacobson, Kavan and Sorkine-Hornung 2013.
   double windingNumber(const Eigen::Vector3d& point) const;
-  /// The winding number changes no faster than this where the surface is no nearer than `clearance`. [1/m]
-  /// A surface is seen under a solid angle whose gradient is an integral along its open edges, as a current's
-  /// magnetic field is (Biot and Savart): none for a closed mesh, whose winding number is constant off its
-  /// surface.
-  double windingGradient(double clearance) const;
+  /// The same for several points at once, of which there is at least one; it is quicker the nearer they lie
+  /// together.
+  std::vector<double> windingNumbers(std::vector<Eigen::Vector3d> points) const;
+  /// The winding number changes no faster than this within `radius` of `middle`;
+  /// infinite if an open edge comes into there. [1/m] A surface is seen under a solid angle whose gradient is
+  /// an integral along its open edges, as a current's magnetic field is (Biot and Savart): none for a closed
+  /// mesh, whose winding number is constant off its surface.
+  double windingGradient(const Eigen::Vector3d& middle, double radius) const;
   /// Length of all edges that no other triangle shares. [m]
   double openEdges() const;
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "random_seed.h"
@@ -154,6 +155,51 @@ TEST(DistanceField, cylinderKeepsThePromise) {
   expectPromise(
       field, [&](const Eigen::Vector3d& point) { return cylinderDistance(cylinder, point); },
       0.001 * cylinder.radius);
+}
+
+/// Of several parts some are inside out, as where a modeller mirrored them; none overlap.
+TEST(DistanceField, partsThatAreInsideOutStayPartsOfTheSolid) {
+  std::mt19937 generator = seededGenerator();
+  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> parts;  // middle and size
+  TriangleMesh mesh;
+  for (int i = 0; i < 4; ++i) {
+    parts.push_back({{0.6 * i, 0.0, 0.0}, randomVector(generator, 0.2, 0.5)});
+    TriangleMesh part = triangulate(Box{parts.back().second});
+    if (i % 2 == 1) {
+      for (auto& triangle : part.triangles) std::swap(triangle[0], triangle[1]);
+    }
+    mesh.append(part, Eigen::Isometry3d(Eigen::Translation3d(parts.back().first)));
+  }
+  expectPromise(
+      computeDistanceField(mesh, 0.03),
+      [&](const Eigen::Vector3d& point) {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const auto& [middle, size] : parts)
+          nearest = std::min(nearest, boxDistance(size, point - middle));
+        return nearest;
+      },
+      0.0);
+}
+
+/// A tenth of the triangles faces the wrong way: that dents and bumps the surface, but hollows nothing out.
+TEST(DistanceField, aFewFlippedFacesLeaveTheMiddleInside) {
+  std::mt19937 generator = seededGenerator();
+  const double radius = 0.3;
+  TriangleMesh mesh = triangulate(Sphere{radius});
+  for (auto& triangle : mesh.triangles) {
+    if (between(generator, 0.0, 1.0) < 0.1) std::swap(triangle[0], triangle[1]);
+  }
+  forEachSample(computeDistanceField(mesh, 0.08), [&](const Eigen::Vector3d& point, double found) {
+    const double winding = std::abs(windingNumber(mesh, point));
+    const bool inside = found < 0.0;
+    if (std::abs(winding - 0.5) > kSeriesError && std::abs(found) > kRounding) {
+      EXPECT_EQ(inside, winding > 0.5) << "at " << point.transpose() << ", winding number " << winding;
+    }
+    // There the flipped faces are seen under about a tenth of the whole, and count once for each side.
+    if (point.norm() < 0.5 * radius) {
+      EXPECT_TRUE(inside) << "at " << point.transpose();
+    }
+  });
 }
 
 TEST(DistanceField, movesWithItsMesh) {

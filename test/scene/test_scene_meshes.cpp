@@ -62,6 +62,45 @@ TEST_F(SceneMeshes, areReadFromTheScenesFolder) {
               1.0 / 6.0, 1e-6);
 }
 
+/// An STL and a COLLADA file of the same corner, which has its unit in the file.
+TEST_F(SceneMeshes, areReadFromStlAndCollada) {
+  write("corner.stl",
+        "solid corner\n"
+        "facet normal 0 0 -1\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nvertex 1 0 0\nendloop\nendfacet\n"
+        "facet normal 0 -1 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 0 1\nendloop\nendfacet\n"
+        "facet normal -1 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 1\nvertex 0 1 0\nendloop\nendfacet\n"
+        "facet normal 1 1 1\nouter loop\nvertex 1 0 0\nvertex 0 1 0\nvertex 0 0 1\nendloop\nendfacet\n"
+        "endsolid corner\n");
+  write("corner.dae", R"(<?xml version="1.0" encoding="utf-8"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+  <asset><unit name="centimeter" meter="0.01"/><up_axis>Z_UP</up_axis></asset>
+  <library_geometries><geometry id="corner"><mesh>
+    <source id="places"><float_array id="numbers" count="12">0 0 0 100 0 0 0 100 0 0 0 100</float_array>
+      <technique_common><accessor source="#numbers" count="4" stride="3"><param name="X" type="float"/>
+        <param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+    <vertices id="vertices"><input semantic="POSITION" source="#places"/></vertices>
+    <triangles count="4"><input semantic="VERTEX" source="#vertices" offset="0"/>
+      <p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles>
+  </mesh></geometry></library_geometries>
+  <library_visual_scenes><visual_scene id="scene"><node><instance_geometry url="#corner"/></node>
+  </visual_scene></library_visual_scenes>
+  <scene><instance_visual_scene url="#scene"/></scene>
+</COLLADA>)");
+  for (const std::string file : {"corner.stl", "corner.dae"}) {
+    EXPECT_NEAR(volume(load("{mesh: " + file + "}").bodies[0].shape), 1.0 / 6.0, 1e-6) << file;
+  }
+}
+
+TEST_F(SceneMeshes, areReadFromPackages) {
+  setenv("ROS_PACKAGE_PATH", SHALLOW_SAND_SOURCE_DIR, 1);
+  for (const auto& entry :
+       std::filesystem::directory_iterator(SHALLOW_SAND_SOURCE_DIR "/config/excavator/meshes")) {
+    const std::string uri =
+        "package://shallow_sand/config/excavator/meshes/" + entry.path().filename().string();
+    EXPECT_GT(volume(load("{mesh: \"" + uri + "\"}").bodies[0].shape), 0.0) << uri;
+  }
+}
+
 TEST_F(SceneMeshes, areScaledAndMirrored) {
   const Scene scene = load("{mesh: corner.obj, scale: [-2, 1, 1], as: convex_hull}");
   EXPECT_NEAR(volume(scene.bodies[0].shape), 2.0 / 6.0, 1e-6);

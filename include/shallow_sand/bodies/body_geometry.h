@@ -42,8 +42,9 @@ struct BodyGeometry {
   bool from_cache = false;
 };
 
-/// The distance field of a body on sand with cells of `sand_spacing` [m]. What is thinner than a cell is made
-/// one cell thick (see sampleMesh), as sand meets bodies at the middles of its columns only. A body too large
+/// The distance field of a body on sand with cells of `sand_spacing` [m]. What is thinner than 1.16 cells is
+/// made that thick (see sampleMesh), as sand meets bodies at the middles of its columns only: between its
+/// samples the field then is a cell thick at least. A body too large
 /// for 2^24 samples is sampled more coarsely, and thickened accordingly.
 /// @throws InvalidParameter with key `mesh` or `spacing` for what cannot be sampled
 BodyGeometry makeBodyGeometry(const TriangleMesh& mesh, double sand_spacing,
