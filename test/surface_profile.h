@@ -13,7 +13,9 @@ namespace shallow_sand {
 
 /// Elevation of the top of the sand in a column, be it on the bed or on a body. [m]
 inline double visibleSurface(const Fields& fields, std::size_t cell) {
-  return static_cast<double>(fields.surface(cell));
+  constexpr float kDust = 0.001f;  // on a body is no surface of sand [m]
+  const bool dusty = fields.hasLoad(cell) && fields.load[cell] < kDust;
+  return static_cast<double>(dusty ? fields.bed[cell] + fields.depth[cell] : fields.surface(cell));
 }
 
 /// All sand of a column: under bodies and on them. [m]

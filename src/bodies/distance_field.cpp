@@ -161,7 +161,10 @@ class Sampler {
     } else if (!isInside(winding)) {
       missing = least_thickness_;
     }
-    const double distance = isInside(winding) ? -nearest.distance : nearest.distance;
+    // Parts that overlap have faces inside of the body: there the distance is 0, and must not look like the
+    // surface to a ray that runs along one.
+    const double distance =
+        isInside(winding) ? -std::max(nearest.distance, 1e-6 * field_.spacing) : nearest.distance;
     at(block.first.x(), block.first.y(), block.first.z()) = static_cast<float>(distance - missing / 2.0);
   }
 

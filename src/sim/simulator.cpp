@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <sstream>
 
@@ -118,6 +119,10 @@ class Simulator::Implementation {
     std::string name;
     std::shared_ptr<const DistanceField> field;
     Motion motion;
+    double reach;  // of its farthest point from its origin [m]
+    // Where and when sand made way for it the last time; the time is infinite if it never did.
+    Eigen::Isometry3d cleared_at = Eigen::Isometry3d::Identity();
+    double cleared_time = std::numeric_limits<double>::infinity();
   };
 
   Implementation(const SimulatorParameters& parameters, std::vector<float> bed, std::vector<float> depth,
@@ -208,6 +213,7 @@ class Simulator::Implementation {
     engine_->restore(fields, snapshot.contacts);
     placed_anew_ = !snapshot.bodies_cleared;
     time_ = snapshot.time;
+    noteCleared();
     trial_ = snapshot.next_step;
     progress_ = snapshot.progress;
     start_volume_ = snapshot.ledger.start;
@@ -256,7 +262,10 @@ class Simulator::Implementation {
 
   void addBody(const std::string& name, std::shared_ptr<const DistanceField> field) {
     engine_->addBody(*field);
-    bodies_.push_back({name, std::move(field), Motion()});
+    const Eigen::Vector3d far_corner(field->samples[0] - 1, field->samples[1] - 1, field->samples[2] - 1);
+    const Eigen::Vector3d opposite = field->origin + field->spacing * far_corner;
+    const double reach = field->origin.cwiseAbs().cwiseMax(opposite.cwiseAbs()).norm();
+    bodies_.push_back({name, std::move(field), Motion(), reach});
   }
 
   Body& present(std::size_t body) {
@@ -268,6 +277,7 @@ class Simulator::Implementation {
     Motion motion;
     appendTo(motion, present(body).name, time_, pose);
     present(body).motion = motion;
+    present(body).cleared_time = std::numeric_limits<double>::infinity();
     placed_anew_ = true;
   }
 
@@ -330,12 +340,37 @@ class Simulator::Implementation {
     time_ = next;
     progress_.last_step = step;
     progress_.steps += 1;
-    clearBodies();
+    steps_since_cleared_ += 1;
+    if (time_ >= end || !parameters_.displacement || bodiesHaveMoved()) clearBodies();
+  }
+
+  /// Whether some body has moved so far that sand has to make way. Rays are dear, and a body crosses a column
+  /// in many steps; whoever looks at the end of an advance finds all bodies cleared.
+  bool bodiesHaveMoved() const {
+    for (const Body& body : bodies_) {
+      if (body.motion.empty()) continue;
+      const Eigen::Isometry3d pose = body.motion.poseAt(time_);
+      const double turned = Eigen::AngleAxisd(pose.linear() * body.cleared_at.linear().transpose()).angle();
+      const double moved = (pose.translation() - body.cleared_at.translation()).norm() + turned * body.reach;
+      if (moved > kLongestWayUncleared * grid_.spacing) return true;
+    }
+    return false;
   }
 
   /// Moves sand out of the bodies where they are now.
   void clearBodies() {
-    if (!bodies_.empty()) engine_->moveBodies(placed());
+    if (bodies_.empty()) return;
+    engine_->moveBodies(placed(), std::max(1, steps_since_cleared_));
+    noteCleared();
+  }
+
+  void noteCleared() {
+    steps_since_cleared_ = 0;
+    for (Body& body : bodies_) {
+      if (body.motion.empty()) continue;
+      body.cleared_at = body.motion.poseAt(time_);
+      body.cleared_time = time_;
+    }
   }
 
   double bodyOverlap() { return bodies_.empty() ? 0.0 : engine_->overlap(placed()); }
@@ -372,11 +407,25 @@ class Simulator::Implementation {
     return placed;
   }
 
+  /// With which a body came from where sand made way for it the last time.
+  Twist cameWith(const Body& body, const Eigen::Isometry3d& pose) const {
+    if (std::isinf(body.cleared_time)) return body.motion.twistAt(time_);
+    const double duration = time_ - body.cleared_time;
+    if (!(duration > 0.0)) return {};
+    Twist twist;
+    twist.linear = (pose.translation() - body.cleared_at.translation()) / duration;
+    // Of a rotation by nothing, roundings would make an axis.
+    if (pose.linear() == body.cleared_at.linear()) return twist;
+    const Eigen::AngleAxisd turn(pose.linear() * body.cleared_at.linear().transpose());
+    twist.angular = turn.axis() * (turn.angle() / duration);
+    return twist;
+  }
+
   PlacedBody place(std::size_t number) const {
     const Body& body = bodies_[number];
     const DistanceField& field = *body.field;
     Eigen::Isometry3d pose = body.motion.poseAt(time_);
-    const Twist twist = body.motion.twistAt(time_);
+    const Twist twist = cameWith(body, pose);
     pose.pretranslate(-Eigen::Vector3d(grid_.origin_x, grid_.origin_y, 0.0));
 
     PlacedBody placed;
@@ -413,6 +462,7 @@ class Simulator::Implementation {
   /// Speeds are known only once a step has read them. A step is tried that is a little shorter than the bound
   /// at the step before, and is repeated in the rare case that speeds have grown by more.
   static constexpr double kHeadroom = 0.97;
+  static constexpr double kLongestWayUncleared = 0.125;  // of a body between two castings of rays [cells]
 
   SimulatorParameters parameters_;
   Grid grid_;
@@ -427,6 +477,7 @@ class Simulator::Implementation {
   double trial_ =
       std::numeric_limits<double>::infinity();  // length of the next step unless something forbids it [s]
   Progress progress_;
+  int steps_since_cleared_ = 0;
   bool placed_anew_ = false;  // a body has its first pose, and sand may be where it is
 };
 

@@ -79,7 +79,7 @@ class PlainStep {
   PlainStep(const Map& map, int threads) : fields_(map), executor_(threads), stepper_(executor_, false) {}
 
   void operator()() {
-    stepper_.attempt(fields_.arguments(kStep), Window{}, fields_.out());
+    stepper_.attempt(fields_.arguments(kStep), {}, fields_.out());
     fields_.swap();
   }
 

@@ -10,7 +10,8 @@ namespace {
 constexpr double kSpacing = 0.02;
 constexpr double kSurface = 0.3;
 constexpr double kBottom = 0.18;  ///< of the body, in the sand from the start
-const Eigen::Vector3d kBox{0.4, 0.32, 0.4};
+/// Two columns thick: all of its sand goes out at once.
+const Eigen::Vector3d kBox{2.0 * kSpacing, 0.32, 0.4};
 const Eigen::Vector2d kMiddle{0.6, 0.6};
 
 /// The last pose of a body that came with a given velocity, in sand that rests: what is inside the body is
@@ -141,22 +142,22 @@ TEST(MomentumGiven, ContactVelocityIsThatOfTheBodyInTheMiddleOfTheInterval) {
     const Grid& grid = simulator.grid();
     const ContactSnapshot contacts = simulator.snapshot().contacts;
     const Eigen::Vector3d origin = Eigen::Vector3d(kMiddle.x(), kMiddle.y(), kBottom + 0.5 * kBox.z()) - arm;
-    std::size_t k = 0;
     int met = 0;
-    for (int j = contacts.window.row_begin; j < contacts.window.row_end; ++j) {
-      for (int i = contacts.window.column_begin; i < contacts.window.column_end; ++i, ++k) {
+    for (int j = 0; j < grid.rows; ++j) {
+      for (int i = 0; i < grid.columns; ++i) {
+        const std::size_t k = grid.index(i, j);
         if (!(contacts.length[k] > 0.0f)) continue;
-        const double z = static_cast<double>(contacts.ceiling[k]) + 0.5 * contacts.length[k];
+        const double z = static_cast<double>(contacts.clearance[k]) + 0.5 * contacts.length[k];
         const Eigen::Vector3d expected =
             velocity + angular.cross(Eigen::Vector3d(grid.x(i), grid.y(j), z) - origin);
         ASSERT_NEAR(contacts.velocity_x[k], expected.x(), 1e-4) << i << ", " << j;
         ASSERT_NEAR(contacts.velocity_y[k], expected.y(), 1e-4) << i << ", " << j;
-        ASSERT_NEAR(contacts.ceiling[k], kBottom, 1e-4) << i << ", " << j;
+        ASSERT_NEAR(contacts.clearance[k], kBottom, 1e-4) << i << ", " << j;
         ASSERT_NEAR(contacts.length[k], kSurface - kBottom, 1e-4) << i << ", " << j;
         met += 1;
       }
     }
-    EXPECT_EQ(met, 20 * 16);
+    EXPECT_EQ(met, 2 * 16);
   }
 }
 

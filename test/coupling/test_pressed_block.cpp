@@ -92,7 +92,9 @@ TEST(PressedBlock, DisplacesAsMuchAsItTakesUpAndRaisesARing) {
     lowest = std::min(lowest, height);
     highest = std::max(highest, height);
     EXPECT_NEAR(angle, 32.0, 3.0);
-    EXPECT_NEAR(height, ringHeight(), 0.2 * ringHeight());
+    // Before the middle of a side the ring is higher than on the mean: less of it goes to the corners.
+    EXPECT_GT(height, 0.9 * ringHeight());
+    EXPECT_LT(height, 1.3 * ringHeight());
   }
   EXPECT_LT(highest - lowest, 0.01 * highest);
 }

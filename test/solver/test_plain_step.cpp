@@ -97,8 +97,7 @@ void compare(std::mt19937& random, const RandomScene& scene, int steps) {
   const std::initializer_list<Engine*> engines{&plain, tiled.get()};
   for (Engine* engine : engines) {
     addAll(scene, *engine);
-    engine->castRays(allPlaced(scene, time));
-    engine->displace();
+    engine->moveBodies(allPlaced(scene, time), 1);
   }
   float dt = static_cast<float>(0.05 * scene.frame);
   for (int step = 0; step < steps; ++step) {
@@ -111,12 +110,12 @@ void compare(std::mt19937& random, const RandomScene& scene, int steps) {
       ASSERT_EQ(plain.attempt(dt), tiled->attempt(dt));
     }
     time += dt;
+    const int hops = 1 + static_cast<int>(random() % 3);
     for (Engine* engine : engines) {
       engine->accept();
       for (std::size_t k = 0; k < scene.pours.size(); ++k)
         if (step % 7 != 0) engine->pour(k, dt * scene.pours[k].rate);
-      engine->castRays(allPlaced(scene, time));
-      engine->displace();
+      engine->moveBodies(allPlaced(scene, time), hops);
     }
     ASSERT_NO_FATAL_FAILURE(expectSame(plain, *tiled)) << "step " << step;
     dt = static_cast<float>(std::min(uniform(random, 0.3, 1.0) * bound, scene.frame));

@@ -14,6 +14,10 @@ struct Sand {
   float hv = 0.0f;  ///< [m²/s]
 };
 
+SHALLOW_SAND_HOST_DEVICE inline Sand sumOf(const Sand& one, const Sand& other) {
+  return {one.h + other.h, one.hu + other.hu, one.hv + other.hv};
+}
+
 /// One value a cell of each, on the memory of a backend.
 struct SandLayer : SandFieldsOut {
   SHALLOW_SAND_HOST_DEVICE Sand get(long long at) const {
@@ -45,7 +49,8 @@ struct ContactFields {
 
 /// w̃ of Eq. 20, of a column of depth h in which a body takes up `length`. [m/s]
 SHALLOW_SAND_HOST_DEVICE inline float meanVerticalVelocity(float length, float velocity_z, float h) {
-  return length > 0.0f && h > 0.0f ? length * velocity_z / h : 0.0f;
+  // In thin sand the length is mostly rounding.
+  return length > 0.0f && h > 0.0f ? minimum(length / h, 1.0f) * velocity_z : 0.0f;
 }
 
 /// Momentum of sand beside a body that moves up or down (Eq. 24), where w̃ differs by `difference` [m/s] from

@@ -128,6 +128,13 @@ struct DisplaceSand {
     return !overflow && !(pushes(i - 1, j) || pushes(i + 1, j) || pushes(i, j - 1) || pushes(i, j + 1));
   }
 
+  /// Whether a column takes load of another one: of one that a wall sweeps, if it is lower; of one under a
+  /// body that comes down, if it is nearer to the edge.
+  SHALLOW_SAND_HOST_DEVICE bool takesLoad(int i, int j, long long of) const {
+    if (contact.swept[of] != 0) return lower(i, j, contact.top[of]);
+    return nearer(i, j, distance[of]) || (inside(i, j) && !contact.isCovered(index(i, j)));
+  }
+
   SHALLOW_SAND_HOST_DEVICE Outflow ofGround(int i, int j) const {
     Outflow out{};
     if (!inside(i, j)) return out;
@@ -159,11 +166,10 @@ struct DisplaceSand {
     const long long at = index(i, j);
     const float excess = load.depth[at] - (contact.swept[at] != 0 ? 0.0f : contact.headroom[at]);
     if (!contact.isCovered(at) || !(excess > 0.0f)) return out;
-    const float own = contact.top[at];
-    out.to_west = lower(i - 1, j, own);
-    out.to_east = lower(i + 1, j, own);
-    out.to_south = lower(i, j - 1, own);
-    out.to_north = lower(i, j + 1, own);
+    out.to_west = takesLoad(i - 1, j, at);
+    out.to_east = takesLoad(i + 1, j, at);
+    out.to_south = takesLoad(i, j - 1, at);
+    out.to_north = takesLoad(i, j + 1, at);
     out.keepAhead(contact.velocity_x[at], contact.velocity_y[at]);
     const int takers = out.takers();
     if (takers == 0) return out;
@@ -238,9 +244,19 @@ struct DisplaceSand {
     above = sumOf(above, to_load);
     return {};
   }
+};
 
-  SHALLOW_SAND_HOST_DEVICE static Sand sumOf(const Sand& one, const Sand& other) {
-    return {one.h + other.h, one.hu + other.hu, one.hv + other.hv};
+/// Sand that still has to go from under bodies, if above 0. [m]
+struct SandWithoutRoom {
+  ContactFields contact;
+  SandColumns columns;
+  int across;
+  float spacing;
+
+  SHALLOW_SAND_HOST_DEVICE float operator()(int i, int j) const {
+    const long long at = static_cast<long long>(j) * across + i;
+    if (!contact.isCovered(at)) return 0.0f;
+    return maximum(columns.ground(at).h - contact.clearance[at], columns.load(at).h - contact.headroom[at]);
   }
 };
 

@@ -23,39 +23,46 @@ struct MeetBodies {
   int across;  ///< cells in a row
   float spacing;
 
+  bool cast;  ///< false: bodies stand where they stood the last time, only sand has moved
+
   SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {
     const long long at = static_cast<long long>(j) * across + i;
     const float b = bed[at];
     Sand below = columns.ground(at);
     Sand above = columns.load(at);
-    const LowestSolid solid = lowestSolid(solidsAt(bins, i, j, spacing, b), spacing);
-    const bool was_closed = columns.cover[at] == Cover::touching;
-    const float old_surface_of_load = contact.top[at] + above.h;
-    const bool rises_over_a_cell = solid.top - contact.top[at] > spacing;
     const bool had_load = above.h > 0.0f;
-    const float clearance = maximum(solid.bottom - b, 0.0f);
+    const float old_top = contact.top[at];
     const float surface = b + below.h;
-    if (solid.lowest_body < 0) {
-      below = {below.h + above.h, below.hu + above.hu, below.hv + above.hv};
+    if (cast) castRay(i, j, surface);
+    const float clearance = contact.clearance[at];
+    const float top = contact.top[at];
+    if (!contact.isCovered(at)) {
+      below = sumOf(below, above);
       above = {};
-    } else if (!was_closed && below.h > clearance && surface > solid.top) {
-      const bool buried = surface - solid.top >= solid.top - solid.bottom;
-      lift(below, above, buried ? clearance : solid.top - b);
+    } else if (columns.cover[at] != Cover::touching && below.h > clearance && surface > top) {
+      const bool buried = surface - top >= (top - b) - clearance;
+      lift(below, above, buried ? clearance : top - b);
     }
-    contact.clearance[at] = clearance;
-    contact.top[at] = solid.top;
-    contact.headroom[at] = solid.next - solid.top;
-    contact.swept[at] = had_load && rises_over_a_cell && solid.top > old_surface_of_load ? 1 : 0;
-    contact.length[at] = maximum(minimum(solid.top, surface) - solid.bottom, 0.0f);
-    const Vector3 velocity = velocityOf(solid, i, j, surface);
-    contact.velocity_x[at] = velocity.x;
-    contact.velocity_y[at] = velocity.y;
-    contact.velocity_z[at] = velocity.z;
+    const bool wall_came = top - old_top > spacing && top > old_top + above.h;
+    contact.swept[at] = had_load && wall_came ? 1 : 0;
+    contact.length[at] = maximum(minimum(top, surface) - (b + clearance), 0.0f);
     ground.set(at, below);
     load.set(at, above);
   }
 
  private:
+  SHALLOW_SAND_HOST_DEVICE void castRay(int i, int j, float surface) const {
+    const long long at = static_cast<long long>(j) * across + i;
+    const LowestSolid solid = lowestSolid(solidsAt(bins, i, j, spacing, bed[at]), spacing);
+    contact.clearance[at] = maximum(solid.bottom - bed[at], 0.0f);
+    contact.top[at] = solid.top;
+    contact.headroom[at] = solid.next - solid.top;
+    const Vector3 velocity = velocityOf(solid, i, j, surface);
+    contact.velocity_x[at] = velocity.x;
+    contact.velocity_y[at] = velocity.y;
+    contact.velocity_z[at] = velocity.z;
+  }
+
   /// All of the ground's sand that is deeper than `kept` becomes load.
   SHALLOW_SAND_HOST_DEVICE static void lift(Sand& below, Sand& above, float kept) {
     const float lifted = below.h - kept;

@@ -42,13 +42,11 @@ struct LowerPushedSand {
     const long long at = index(i, j);
     if (nothingNear(i, j)) return to.set(at, {});
     const Sand own = from.get(at);
-    const float stays = own.h > 0.0f ? (own.h - fall(i, j).sum()) / own.h : 0.0f;
-    Sand sum{stays * own.h, stays * own.hu, stays * own.hv};
-    add(sum, i - 1, j, fall(i - 1, j).east);
-    add(sum, i + 1, j, fall(i + 1, j).west);
-    add(sum, i, j - 1, fall(i, j - 1).north);
-    add(sum, i, j + 1, fall(i, j + 1).south);
-    to.set(at, sum);
+    const float stays = own.h > 0.0f ? maximum(own.h - fall(i, j).sum(), 0.0f) / own.h : 0.0f;
+    const Sand kept{stays * own.h, stays * own.hu, stays * own.hv};
+    const Sand along_x = sumOf(part(i - 1, j, fall(i - 1, j).east), part(i + 1, j, fall(i + 1, j).west));
+    const Sand along_y = sumOf(part(i, j - 1, fall(i, j - 1).north), part(i, j + 1, fall(i, j + 1).south));
+    to.set(at, sumOf(kept, sumOf(along_x, along_y)));
   }
 
  private:
@@ -90,11 +88,12 @@ struct LowerPushedSand {
     return {share * fall.west, share * fall.east, share * fall.south, share * fall.north};
   }
 
-  SHALLOW_SAND_HOST_DEVICE void add(Sand& sum, int i, int j, float depth) const {
-    if (!(depth > 0.0f)) return;
-    const Sand other = from.get(index(i, j));
-    const float part = depth / other.h;
-    sum = {sum.h + depth, sum.hu + part * other.hu, sum.hv + part * other.hv};
+  /// So much of a column's pushed sand, with its momentum.
+  SHALLOW_SAND_HOST_DEVICE Sand part(int i, int j, float depth) const {
+    if (!(depth > 0.0f)) return {};
+    const Sand whole = from.get(index(i, j));
+    const float share = depth / whole.h;
+    return {depth, share * whole.hu, share * whole.hv};
   }
 };
 
@@ -109,8 +108,7 @@ struct LayPushedSand {
     const Sand more = pushed.get(at);
     if (!(more.h > 0.0f)) return;
     pushed.set(at, {});
-    const Sand sand = columns.visible.get(at);
-    columns.visible.set(at, {sand.h + more.h, sand.hu + more.hu, sand.hv + more.hv});
+    columns.visible.set(at, sumOf(columns.visible.get(at), more));
   }
 };
 

@@ -26,8 +26,9 @@ class Engine {
   /// Prepares a pour; pours are numbered from 0.
   virtual void addPour(const LocalRegion& region) = 0;
 
-  /// Bodies stand here now, and no others: the sand makes way.
-  virtual void moveBodies(const std::vector<PlacedBody>& bodies) = 0;
+  /// Bodies stand here now, and no others: the sand makes way. From under a body it goes by at most `hops`
+  /// columns.
+  virtual void moveBodies(const std::vector<PlacedBody>& bodies, int hops) = 0;
   /// Computes a step of dt [s]. Returns the largest speed that it had to follow (Eq. 14, 34), that of bodies
   /// in the sand included [m/s]: if dt was too long for it, attempt again.
   virtual float attempt(float dt) = 0;

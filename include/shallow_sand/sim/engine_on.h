@@ -60,7 +60,7 @@ class EngineOn : public Engine {
     pours_.push_back(std::move(pour));
   }
 
-  void moveBodies(const std::vector<PlacedBody>& bodies) override {
+  void moveBodies(const std::vector<PlacedBody>& bodies, int hops) override {
     if (contacts_.empty()) return;
     std::vector<Window> touched;
     // One more column on each side is free to take sand.
@@ -69,7 +69,7 @@ class EngineOn : public Engine {
     // Cells that a body has left are looked at once more, to be cleared.
     touched.insert(touched.end(), windows_.begin(), windows_.end());
     forEachBins(bodies, withoutOverlap(touched),
-                [this](const BodyBins& bins) { displacement_ ? makeWay(bins) : drag(bins); });
+                [&](const BodyBins& bins) { displacement_ ? makeWay(bins, hops) : drag(bins); });
     windows_ = now;
   }
 
@@ -236,19 +236,28 @@ class EngineOn : public Engine {
     Memory<int> distance;
   };
 
-  void makeWay(const BodyBins& bins) {
+  /// Sand goes on by a column in each of `hops`, unless all has gone before.
+  void makeWay(const BodyBins& bins, int hops) {
+    stepper_.touch(bins.window);
+    for (int hop = 0; hop < hops; ++hop) {
+      displace(bins, hop == 0);
+      const SandWithoutRoom rest{contact(), columns(), grid_.columns, grid_.spacing};
+      if (hop + 1 < hops && executor_.partsWith(bins.window, rest).empty()) return;
+    }
+  }
+
+  void displace(const BodyBins& bins, bool cast) {
     const Window& window = bins.window;
-    stepper_.touch(window);
     int* distance = contacts_.front().distance.data();
     const SandLayer ground = layer(next_);
     const SandLayer load = layer(contacts_.front().next_hidden);
+    const SandLayer pushed = layer(contacts_.front().pushed);
     executor_.forEachCell(window, MeetBodies{bins, columns(), contact(), bed_.data(), ground, load,
-                                             grid_.columns, grid_.spacing});
+                                             grid_.columns, grid_.spacing, cast});
     executor_.forEachCell(Window::line(window.columns()),
                           DistanceAlongColumns{contact().clearance, ground.depth, distance, grid_.columns,
                                                grid_.spacing, window});
     executor_.forEachCell(Window::line(window.rows()), DistanceAlongRows{distance, grid_.columns, window});
-    const SandLayer pushed = layer(contacts_.front().pushed);
     executor_.forEachCell(window, DisplaceSand{contact(), distance, ground, load, bed_.data(), columns(),
                                                pushed, grid_.columns, grid_.spacing, window});
     std::vector<Window> reached = executor_.partsWith(window, PushedDepth{pushed.depth, grid_.columns});
