@@ -296,6 +296,7 @@ class EngineOn : public Engine {
                      contacts_.front().flowed.data(),
                      layer(next_),
                      layer(contacts_.front().next_hidden)};
+      stepper_.touch(window);
       executor_.forEachCell(window, flow);
       executor_.forEachCell(window, CopyLoads{flow});
     }
