@@ -31,13 +31,13 @@ auto loadBands(State& state) {
 template <class State>
 auto contactBands(State& state) {
   auto& c = state.contacts;
-  return std::array<std::pair<const char*, decltype(&c.closed)>, 7>{{{"contact_clearance", &c.clearance},
-                                                                     {"contact_headroom", &c.headroom},
-                                                                     {"contact_closed", &c.closed},
-                                                                     {"contact_length", &c.length},
-                                                                     {"contact_velocity_x", &c.velocity_x},
-                                                                     {"contact_velocity_y", &c.velocity_y},
-                                                                     {"contact_velocity_z", &c.velocity_z}}};
+  return std::array<std::pair<const char*, decltype(&c.cover)>, 7>{{{"contact_clearance", &c.clearance},
+                                                                    {"contact_headroom", &c.headroom},
+                                                                    {"contact_cover", &c.cover},
+                                                                    {"contact_length", &c.length},
+                                                                    {"contact_velocity_x", &c.velocity_x},
+                                                                    {"contact_velocity_y", &c.velocity_y},
+                                                                    {"contact_velocity_z", &c.velocity_z}}};
 }
 
 bool hasBand(GDALDataset& dataset, const std::string& name) {

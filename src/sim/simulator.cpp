@@ -244,7 +244,7 @@ class Simulator::Implementation {
       if (window.united(all).cells() != all.cells())
         throw InvalidParameter("contacts", "a window that reaches beyond the grid", "one on the grid");
     }
-    for (const auto* values : {&contacts.clearance, &contacts.headroom, &contacts.closed, &contacts.length,
+    for (const auto* values : {&contacts.clearance, &contacts.headroom, &contacts.cover, &contacts.length,
                                &contacts.velocity_x, &contacts.velocity_y, &contacts.velocity_z}) {
       const bool valid =
           values->size() == grid_.cells() &&

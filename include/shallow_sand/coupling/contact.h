@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "shallow_sand/solver/cover.h"
 #include "shallow_sand/solver/step.h"
 
 namespace shallow_sand {
@@ -62,17 +63,17 @@ SHALLOW_SAND_HOST_DEVICE inline float pushedAside(float momentum, float h, float
 /// the load on it, while the sand below keeps still. Elsewhere a step sees the ground, and loads flow by
 /// FlowLoads.
 struct SandColumns {
-  SandLayer visible;     ///< what a step sees
-  SandLayer hidden;      ///< the other layer
-  float* visible_bed;    ///< what the visible layer lies on [m]
-  float* ceiling;        ///< depth of visible sand for which there is room, infinite without a body above [m]
-  std::uint8_t* closed;  ///< whether the visible layer is the load
+  SandLayer visible;   ///< what a step sees
+  SandLayer hidden;    ///< the other layer
+  float* visible_bed;  ///< what the visible layer lies on [m]
+  float* ceiling;      ///< depth of visible sand for which there is room, infinite without a body above [m]
+  Cover* cover;        ///< where a body touches the ground's sand, the visible layer is the load
 
   SHALLOW_SAND_HOST_DEVICE Sand ground(long long at) const {
-    return closed[at] != 0 ? hidden.get(at) : visible.get(at);
+    return cover[at] == Cover::touching ? hidden.get(at) : visible.get(at);
   }
   SHALLOW_SAND_HOST_DEVICE Sand load(long long at) const {
-    return closed[at] != 0 ? visible.get(at) : hidden.get(at);
+    return cover[at] == Cover::touching ? visible.get(at) : hidden.get(at);
   }
 };
 

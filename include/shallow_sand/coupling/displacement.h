@@ -93,6 +93,7 @@ struct DisplaceSand {
   SandLayer load;
   const float* bed;
   SandColumns columns;  ///< is written
+  SandLayer pushed;     ///< is written: what was pushed to columns that no body covers
   int across;           ///< cells in a row
   float spacing;
   Window window;  ///< its outermost cells are clear of bodies or at the edge of the grid
@@ -201,9 +202,10 @@ struct DisplaceSand {
     const long long at = index(i, j);
     Sand below = ground.get(at);
     Sand above = load.get(at);
+    Sand came;
     const bool covered = contact.isCovered(at);
     const bool left_alone = isLeftAlone(i, j);
-    if (!left_alone) exchange(i, j, below, above);
+    if (!left_alone) came = exchange(i, j, below, above);
     const bool closed = covered && isFull(below.h, contact.clearance[at], spacing);
     if (!left_alone && below.h > 0.0f && !closed) {
       // As Eq. 23 has it, hu takes the difference along x only, hv the one along y only.
@@ -213,25 +215,32 @@ struct DisplaceSand {
           pushedAside(below.hv, below.h, verticalVelocity(i, j + 1) - verticalVelocity(i, j - 1), spacing);
     }
     if (closed) below = {below.h, 0.0f, 0.0f};
-    columns.closed[at] = closed ? 1 : 0;
+    columns.cover[at] = closed ? Cover::touching : (covered ? Cover::hanging : Cover::none);
     columns.visible.set(at, closed ? above : below);
     columns.hidden.set(at, closed ? below : above);
     columns.visible_bed[at] = closed ? contact.top[at] : bed[at];
     columns.ceiling[at] = closed ? contact.headroom[at] : contact.clearance[at];
+    pushed.set(at, came);
   }
 
  private:
-  SHALLOW_SAND_HOST_DEVICE void exchange(int i, int j, Sand& below, Sand& above) const {
+  /// Gives away what there is no room for, and takes what neighbours give. Returns what comes to a column
+  /// that no body covers; under or on a body it stays where it comes to.
+  SHALLOW_SAND_HOST_DEVICE Sand exchange(int i, int j, Sand& below, Sand& above) const {
     const long long at = index(i, j);
     below = kept(below, ofGround(i, j), contact.clearance[at]);
     above = kept(above, ofLoad(i, j), contact.swept[at] != 0 ? 0.0f : contact.headroom[at]);
-    add(below, gathered(ofGround(i - 1, j), ofGround(i + 1, j), ofGround(i, j - 1), ofGround(i, j + 1)));
-    add(contact.isCovered(at) ? above : below,
-        gathered(ofLoad(i - 1, j), ofLoad(i + 1, j), ofLoad(i, j - 1), ofLoad(i, j + 1)));
+    const Sand to_ground =
+        gathered(ofGround(i - 1, j), ofGround(i + 1, j), ofGround(i, j - 1), ofGround(i, j + 1));
+    const Sand to_load = gathered(ofLoad(i - 1, j), ofLoad(i + 1, j), ofLoad(i, j - 1), ofLoad(i, j + 1));
+    if (!contact.isCovered(at)) return sumOf(to_ground, to_load);
+    below = sumOf(below, to_ground);
+    above = sumOf(above, to_load);
+    return {};
   }
 
-  SHALLOW_SAND_HOST_DEVICE static void add(Sand& sand, const Sand& more) {
-    sand = {sand.h + more.h, sand.hu + more.hu, sand.hv + more.hv};
+  SHALLOW_SAND_HOST_DEVICE static Sand sumOf(const Sand& one, const Sand& other) {
+    return {one.h + other.h, one.hu + other.hu, one.hv + other.hv};
   }
 };
 
@@ -252,7 +261,7 @@ struct ContactSpeed {
       speed = maximum(maximum(fabsf(contact.velocity_x[at]), fabsf(contact.velocity_y[at])),
                       fabsf(contact.velocity_z[at]));
     }
-    if (columns.closed[at] != 0 || !(load.h > 0.0f)) return speed;
+    if (columns.cover[at] != Cover::hanging || !(load.h > 0.0f)) return speed;
     const LocalMaterial material =
         layer_depth == nullptr ? sand.uniform : LocalMaterial{0.0f, layer_fraction[at], layer_depth[at]};
     const float inverse = inverseDepth(load.h, sand);

@@ -14,16 +14,15 @@ struct FlowLoads {
   SandColumns columns;
   ContactFields contact;
   const float* bed;
-  SandLayer visible;  ///< are written where isInvolved
+  std::uint8_t* flowed;  ///< whether anything might have, one a cell; is written
+  SandLayer visible;     ///< are written there
   SandLayer hidden;
 
   SHALLOW_SAND_HOST_DEVICE bool onGrid(int i, int j) const {
     return i >= 0 && i < step.columns && j >= 0 && j < step.rows;
   }
   SHALLOW_SAND_HOST_DEVICE bool hangs(int i, int j) const {
-    if (!onGrid(i, j)) return false;
-    const long long at = step.index(i, j);
-    return contact.isCovered(at) && columns.closed[at] == 0;
+    return onGrid(i, j) && columns.cover[step.index(i, j)] == Cover::hanging;
   }
   /// Whether there is a load that flows, or room for one beside sand that stands higher.
   SHALLOW_SAND_HOST_DEVICE bool mayFlow(int i, int j, float highest) const {
@@ -50,8 +49,9 @@ struct FlowLoads {
   }
 
   SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {
-    if (!isInvolved(i, j)) return;
     const long long at = step.index(i, j);
+    flowed[at] = isInvolved(i, j) ? 1 : 0;
+    if (flowed[at] == 0) return;
     const bool hanging = hangs(i, j);
     const Cell below = visibleCell(at);
     const Cell above = hanging ? loadCell(at) : below;
@@ -186,8 +186,8 @@ struct CopyLoads {
   FlowLoads flow;
 
   SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {
-    if (!flow.isInvolved(i, j)) return;
     const long long at = flow.step.index(i, j);
+    if (flow.flowed[at] == 0) return;
     flow.columns.visible.set(at, flow.visible.get(at));
     flow.columns.hidden.set(at, flow.hidden.get(at));
   }

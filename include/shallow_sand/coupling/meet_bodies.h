@@ -29,7 +29,7 @@ struct MeetBodies {
     Sand below = columns.ground(at);
     Sand above = columns.load(at);
     const LowestSolid solid = lowestSolid(solidsAt(bins, i, j, spacing, b), spacing);
-    const bool was_closed = columns.closed[at] != 0;
+    const bool was_closed = columns.cover[at] == Cover::touching;
     const float old_surface_of_load = contact.top[at] + above.h;
     const bool rises_over_a_cell = solid.top - contact.top[at] > spacing;
     const bool had_load = above.h > 0.0f;

@@ -92,6 +92,13 @@ class CudaExecutor {
     return intAsFloat(bits);
   }
 
+  /// Parts of the window that hold all cells for which function(i, j) is above 0: the whole of it, or nothing.
+  template <class Function>
+  std::vector<Window> partsWith(const Window& window, const Function& function) {
+    if (maximumOverCells(window, function) > 0.0f) return {window};
+    return {};
+  }
+
  private:
   static dim3 block() { return dim3(32, 4); }
   static dim3 blocks(const Window& window) {

@@ -79,6 +79,21 @@ class HostExecutor {
     return result;
   }
 
+  /// Parts of the window that hold all cells for which function(i, j) is above 0, and few others.
+  template <class Function>
+  std::vector<Window> partsWith(const Window& window, const Function& function) const {
+    constexpr int kColumns = 32;
+    constexpr int kRows = 8;
+    std::vector<Window> parts;
+    for (int j = window.row_begin; j < window.row_end; j += kRows) {
+      for (int i = window.column_begin; i < window.column_end; i += kColumns) {
+        const Window part = Window{i, j, i + kColumns, j + kRows}.overlap(window);
+        if (holdsAny(part, function)) parts.push_back(part);
+      }
+    }
+    return parts;
+  }
+
   /// Calls function(task, thread) once for each of `count` tasks, the thread's number being below threads().
   /// Every thread begins with a share of its own and then helps the others: one that the machine takes away
   /// for another process holds up no more than the task that it is at.
@@ -114,6 +129,16 @@ class HostExecutor {
   int threads() const { return threads_; }
 
  private:
+  template <class Function>
+  static bool holdsAny(const Window& window, const Function& function) {
+    for (int j = window.row_begin; j < window.row_end; ++j) {
+      for (int i = window.column_begin; i < window.column_end; ++i) {
+        if (function(i, j) > 0.0f) return true;
+      }
+    }
+    return false;
+  }
+
   /// To wake a thread takes as long as some hundred cells.
   static bool isWorthThreads(const Window& window) {
     return window.rows() > 1 && window.columns() * window.rows() >= 512;

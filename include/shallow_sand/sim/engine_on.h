@@ -10,6 +10,7 @@
 #include "shallow_sand/coupling/drag.h"
 #include "shallow_sand/coupling/flow_loads.h"
 #include "shallow_sand/coupling/meet_bodies.h"
+#include "shallow_sand/coupling/pushed_sand.h"
 #include "shallow_sand/sim/engine.h"
 #include "shallow_sand/solver/change_sand.h"
 
@@ -126,7 +127,7 @@ class EngineOn : public Engine {
     fields.load_momentum_x = downloaded(c.hidden.momentum_x);
     fields.load_momentum_y = downloaded(c.hidden.momentum_y);
     fields.load_elevation = downloaded(c.top);
-    swapWhereClosed(downloaded(c.closed), fields);
+    swapWhereTouching(downloaded(c.cover), fields);
     return fields;
   }
 
@@ -167,8 +168,7 @@ class EngineOn : public Engine {
     snapshot.velocity_x = downloaded(c.velocity_x);
     snapshot.velocity_y = downloaded(c.velocity_y);
     snapshot.velocity_z = downloaded(c.velocity_z);
-    const std::vector<std::uint8_t> closed = downloaded(c.closed);
-    snapshot.closed.assign(closed.begin(), closed.end());
+    for (const Cover cover : downloaded(c.cover)) snapshot.cover.push_back(static_cast<float>(cover));
     return snapshot;
   }
 
@@ -176,14 +176,15 @@ class EngineOn : public Engine {
     bed_ = uploaded(fields.bed);
     stepper_.touch(Window::all(grid_));
     windows_ = contacts.windows;
-    const std::vector<std::uint8_t> closed(contacts.closed.begin(), contacts.closed.end());
+    std::vector<Cover> cover;
+    for (const float value : contacts.cover) cover.push_back(static_cast<Cover>(static_cast<int>(value)));
     Fields layers = fields;
-    if (!windows_.empty()) swapWhereClosed(closed, layers);
+    if (!windows_.empty()) swapWhereTouching(cover, layers);
     state_ = uploadedState(layers);
     next_ = uploadedState(layers);
     if (contacts_.empty()) return;
     contacts_.front() = Contacts(bed_);
-    if (!windows_.empty()) restoreContacts(layers, contacts, closed);
+    if (!windows_.empty()) restoreContacts(layers, contacts, cover);
   }
 
  private:
@@ -211,9 +212,11 @@ class EngineOn : public Engine {
           swept(bed.size()),
           hidden(bed.size()),
           next_hidden(bed.size()),
+          pushed(bed.size()),
           visible_bed(uploaded(downloaded(bed))),
           ceiling(bed.size(), std::numeric_limits<float>::infinity()),
-          closed(bed.size()),
+          cover(bed.size(), Cover::none),
+          flowed(bed.size()),
           distance(bed.size()) {}
     Memory<float> clearance;
     Memory<float> top;
@@ -225,9 +228,11 @@ class EngineOn : public Engine {
     Memory<std::uint8_t> swept;
     State hidden;
     State next_hidden;
+    State pushed;
     Memory<float> visible_bed;
     Memory<float> ceiling;
-    Memory<std::uint8_t> closed;
+    Memory<Cover> cover;
+    Memory<std::uint8_t> flowed;
     Memory<int> distance;
   };
 
@@ -243,8 +248,26 @@ class EngineOn : public Engine {
                           DistanceAlongColumns{contact().clearance, ground.depth, distance, grid_.columns,
                                                grid_.spacing, window});
     executor_.forEachCell(Window::line(window.rows()), DistanceAlongRows{distance, grid_.columns, window});
+    const SandLayer pushed = layer(contacts_.front().pushed);
     executor_.forEachCell(window, DisplaceSand{contact(), distance, ground, load, bed_.data(), columns(),
-                                               grid_.columns, grid_.spacing, window});
+                                               pushed, grid_.columns, grid_.spacing, window});
+    std::vector<Window> reached = executor_.partsWith(window, PushedDepth{pushed.depth, grid_.columns});
+    for (Window& part : reached) part = part.grown(kPassesOfPushedSand, grid_);
+    for (const Window& part : withoutOverlap(reached)) layPushedSand(part, pushed);
+  }
+
+  /// `pushed` is 0 around what can come into the window, and everywhere in it afterwards.
+  void layPushedSand(const Window& window, const SandLayer& pushed) {
+    stepper_.touch(window);
+    const SandLayer spare = layer(next_);
+    const float* repose_rise = repose_rise_.size() == 0 ? nullptr : repose_rise_.data();
+    const LowerPushedSand there{columns(), repose_rise, sand_, pushed, spare, grid_.columns, window};
+    const LowerPushedSand back{columns(), repose_rise, sand_, spare, pushed, grid_.columns, window};
+    for (int pass = 0; pass < kPassesOfPushedSand; pass += 2) {
+      executor_.forEachCell(window, there);
+      executor_.forEachCell(window, back);
+    }
+    executor_.forEachCell(window, LayPushedSand{columns(), pushed, grid_.columns});
   }
 
   void drag(const BodyBins& bins) {
@@ -257,7 +280,12 @@ class EngineOn : public Engine {
 
   void flowLoads() {
     for (const Window& window : windows_) {
-      FlowLoads flow{Step<true, false>{attempted_},       columns(), contact(), bed_.data(), layer(next_),
+      FlowLoads flow{Step<true, false>{attempted_},
+                     columns(),
+                     contact(),
+                     bed_.data(),
+                     contacts_.front().flowed.data(),
+                     layer(next_),
                      layer(contacts_.front().next_hidden)};
       executor_.forEachCell(window, flow);
       executor_.forEachCell(window, CopyLoads{flow});
@@ -284,9 +312,9 @@ class EngineOn : public Engine {
   }
 
   /// Ground and load become what a step sees and what it does not, or the other way round.
-  static void swapWhereClosed(const std::vector<std::uint8_t>& closed, Fields& fields) {
-    for (std::size_t k = 0; k < closed.size(); ++k) {
-      if (closed[k] == 0) continue;
+  static void swapWhereTouching(const std::vector<Cover>& cover, Fields& fields) {
+    for (std::size_t k = 0; k < cover.size(); ++k) {
+      if (cover[k] != Cover::touching) continue;
       std::swap(fields.depth[k], fields.load[k]);
       std::swap(fields.momentum_x[k], fields.load_momentum_x[k]);
       std::swap(fields.momentum_y[k], fields.load_momentum_y[k]);
@@ -294,7 +322,7 @@ class EngineOn : public Engine {
   }
 
   void restoreContacts(const Fields& layers, const ContactSnapshot& contacts,
-                       const std::vector<std::uint8_t>& closed) {
+                       const std::vector<Cover>& cover) {
     Contacts& c = contacts_.front();
     c.clearance = uploaded(contacts.clearance);
     c.top = uploaded(layers.load_elevation);
@@ -303,12 +331,12 @@ class EngineOn : public Engine {
     c.velocity_x = uploaded(contacts.velocity_x);
     c.velocity_y = uploaded(contacts.velocity_y);
     c.velocity_z = uploaded(contacts.velocity_z);
-    c.closed = uploaded(closed);
+    c.cover = uploaded(cover);
     c.hidden = {uploaded(layers.load), uploaded(layers.load_momentum_x), uploaded(layers.load_momentum_y)};
     std::vector<float> bed = layers.bed;
     std::vector<float> ceiling = contacts.clearance;
-    for (std::size_t k = 0; k < closed.size(); ++k) {
-      if (closed[k] == 0) continue;
+    for (std::size_t k = 0; k < cover.size(); ++k) {
+      if (cover[k] != Cover::touching) continue;
       bed[k] = layers.load_elevation[k];
       ceiling[k] = contacts.headroom[k];
     }
@@ -354,7 +382,7 @@ class EngineOn : public Engine {
     if (!contacts_.empty()) {
       const SandLayer loads = columns().hidden;
       change.hanging = {loads.depth,   loads.momentum_x,  loads.momentum_y,
-                        contact().top, columns().ceiling, columns().closed};
+                        contact().top, columns().ceiling, columns().cover};
     }
     change.taken = taken.data();
     executor_.forEachCell(change.window, change);
@@ -386,7 +414,7 @@ class EngineOn : public Engine {
 
   SandColumns columns() {
     Contacts& c = contacts_.front();
-    return {layer(state_), layer(c.hidden), c.visible_bed.data(), c.ceiling.data(), c.closed.data()};
+    return {layer(state_), layer(c.hidden), c.visible_bed.data(), c.ceiling.data(), c.cover.data()};
   }
 
   const float* visibleBed() const {
@@ -411,6 +439,8 @@ class EngineOn : public Engine {
     step.setTimeStep(dt);
     return step;
   }
+
+  static constexpr int kPassesOfPushedSand = 8;  ///< even
 
   static double sum(const Memory<double>& memory) {
     const std::vector<double> values = downloaded(memory);

@@ -62,7 +62,7 @@ struct ContactSnapshot {
   std::vector<Window> windows;   ///< columns that bodies may touch
   std::vector<float> clearance;  ///< depth of sand that fits under the lowest body, infinite without one [m]
   std::vector<float> headroom;  ///< depth of sand that fits between it and the next, infinite without one [m]
-  std::vector<float> closed;    ///< 1 where it touches the ground's sand, else 0
+  std::vector<float> cover;     ///< Cover of each column, as a number
   std::vector<float> length;    ///< of it within the ground's sand [m]
   std::vector<float> velocity_x;  ///< of the body [m/s]
   std::vector<float> velocity_y;

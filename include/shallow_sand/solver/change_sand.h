@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
 
 #include "shallow_sand/core/parameters.h"
 #include "shallow_sand/device/window.h"
+#include "shallow_sand/solver/cover.h"
 
 namespace shallow_sand {
 
@@ -35,10 +35,10 @@ struct HangingSand {
   const float* elevation;  ///< of what it lies on [m]
   const float*
       ceiling;  ///< depth of the ground's sand for which there is room, infinite if no body is above [m]
-  const std::uint8_t* closed;  ///< whether the body touches the ground's sand, and takes the ground's place
+  const Cover* cover;
 
   SHALLOW_SAND_HOST_DEVICE bool isAt(long long at) const {
-    return depth != nullptr && closed[at] == 0 && ceiling[at] < 1e30f;
+    return depth != nullptr && cover[at] == Cover::hanging;
   }
 };
 
