@@ -65,8 +65,7 @@ class Excavation(unittest.TestCase):
         spacing = rospy.get_param(GRID)["spacing"]
         self.check_trench(path, points, spacing)
         self.check_heap(points, spacing)
-        # A bucket that curls in the sand costs some: 1.2e-4 in all.
-        self.assertLess(status.volume_error, 5e-4)
+        self.assertLess(status.volume_error, 1e-6)
         self.assertGreater(status.volume_start, 0.0)
         self.assertTrue(all(b.state == BodyStatus.MOVING for b in status.bodies), status.bodies)
         self.assertIn("bucket", [b.name for b in status.bodies])
