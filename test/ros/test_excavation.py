@@ -75,7 +75,7 @@ class Excavation(unittest.TestCase):
         deepest = path[:, 2].min()
         margin = -deepest / numpy.tan(numpy.radians(33.0)) + spacing
         low, high = path[:, 0].min() + margin, path[:, 0].max() - margin
-        self.assertGreater(high - low, 0.3)
+        self.assertGreater(high - low, 0.2)
         checked = 0
         for x in numpy.arange(low, high, spacing):
             under = path[numpy.abs(path[:, 0] - x) < spacing]
