@@ -75,9 +75,11 @@ class Traps(unittest.TestCase):
             with World(frames) as world, RunningNode("trapped", scene) as node:
                 self.assertEqual(sorted(body.name for body in node.status(lambda status: len(status.bodies) == 3).bodies),
                                  ["mirrored", "post", "shell"])
-                # 8 inches wide: 0.2 m.
+                # 8 inches wide, 0.2 m, and upright.
                 wait_for_depth(node, 0.55, 0.45, lambda depth: depth < 0.1 * DEPTH)
                 wait_for_depth(node, 0.70, 0.45, lambda depth: depth > 0.3 * DEPTH)
+                for y in (0.25, 0.75):
+                    wait_for_depth(node, 0.5, y, lambda depth: depth > 0.3 * DEPTH)
                 # The mirrored one reaches from x = 0.6 to 0.8.
                 wait_for_depth(node, 0.7, 1.5, lambda depth: depth < 0.1 * DEPTH)
                 wait_for_depth(node, 0.95, 1.5, lambda depth: depth > 0.3 * DEPTH)
