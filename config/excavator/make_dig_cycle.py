@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""Writes dig_cycle.yaml: the joint positions of the excavator while it digs a trench in two passes.
+"""Writes dig_cycle.yaml: the joint positions of the excavator while it digs a trench and heaps what it dug beside it.
 
     /usr/bin/python3 make_dig_cycle.py
 
 The cycle is given below as waypoints of the bucket: where its cutting edge is, in the machine's frame (x forward, z up, z = 0 on the
 ground), how far it is tilted, and how far the house is swung. Between waypoints each of these runs along a monotone cubic, so that a
 height that two waypoints share is kept exactly. Inverse kinematics in the plane of the arm then gives the joints, and the hydraulics'
-joints follow. All lengths come from excavator.urdf, and the bucket's lower side from its mesh.
+joints follow. All lengths come from excavator.urdf.
 """
 
 import pathlib
@@ -31,75 +31,60 @@ def turn(angle):
     return np.exp(1j * np.asarray(angle))
 
 
-def bucket_points():
-    """The corners of the bucket's collision mesh in the plane of the arm."""
-    uri = ROBOT.find("link[@name='bucket']/collision/geometry/mesh").get("filename")
-    data = (HERE / "meshes" / uri.rsplit("/", 1)[1]).read_bytes()
-    triangles = np.frombuffer(data, np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")]), offset=84)
-    corners = triangles["corners"].reshape(-1, 3).astype(float)
-    return corners[:, 0] + 1j * corners[:, 2]
-
-
-def edge_height(lower_side, tilt):
-    """The height of the cutting edge at which the lowest point of the bucket is at `lower_side`."""
-    attitude = turn(np.radians(tilt))
-    return lower_side + (pin("bucket_edge") * attitude).imag - (bucket_points() * attitude).imag.min()
-
-
 # Waypoints: time, edge x, y and z, tilt. Tilt is the elevation of the bucket's x axis in degrees: at -90 it points straight down and the
 # mouth faces the machine; less is curled in. The house is swung so that the arm's plane goes through (x, y).
 
 
-def dig(start, x, depth):
-    """Enters the sand at x, drags level, then rises while it still pulls. The floor behind the edge stays above the edge."""
-    return [
-        (start, x + 0.10, 0.0, 0.30, -76.0),
-        (start + 1.6, x, 0.0, depth, -86.0),
-        (start + 2.2, x - 0.12, 0.0, depth, -87.0),
-        (start + 6.2, x - 1.30, 0.0, depth, -90.0),
-        (start + 7.8, x - 1.70, 0.0, -0.02, -94.0),
+def bucket_turned(pin_x, pin_z, tilt):
+    """The cutting edge of a bucket whose pin is at a place of the arm's plane."""
+    edge = pin_x + 1j * pin_z + pin("bucket_edge") * turn(np.radians(tilt))
+    return edge.real, edge.imag
+
+
+def load(start, x, depth, heap_swing):
+    """Enters the sand at x, drags level until the bucket is full, curls, lifts, swings, and tips it out over the heap."""
+    def at_heap(pin_z, tilt):
+        radius, z = bucket_turned(HEAP_RADIUS, pin_z, tilt)
+        return radius * np.cos(heap_swing), radius * np.sin(heap_swing), z, tilt
+
+    def in_line(pin_x, pin_z, tilt):
+        edge_x, edge_z = bucket_turned(pin_x, pin_z, tilt)
+        return edge_x, 0.0, edge_z, tilt
+
+    waypoints = [
+        (0.0, x + 0.10, 0.0, 0.30, -76.0),
+        (1.4, x, 0.0, depth, -86.0),
+        (1.8, x - 0.10, 0.0, depth, -87.0),
+        (5.2, x - 1.15, 0.0, depth, -95.0),
+        (6.6, x - 1.50, 0.0, depth + 0.12, -135.0),
+        (7.9, *in_line(x - 1.05, 0.60, CURLED)),
+        (9.2, *in_line(x - 1.00, 1.10, CURLED)),
+        (12.6, *at_heap(1.25, CURLED)),
+        (14.6, *at_heap(1.25, -75.0)),
+        (15.0, *at_heap(1.25, -62.0)),
     ]
+    return [(start + waypoint[0], *waypoint[1:]) for waypoint in waypoints]
 
 
-def sweep(start, far_y):
-    """Sets the curled bucket down beside the pile and pushes that to the left with its side, straight across and a little outwards."""
-    tilt, lower_side = -130.0, 0.015
-    low = edge_height(lower_side, tilt)
-    return [(start + share * 4.2, 1.42 + 0.30 * share, -1.05 + (far_y + 1.05) * share, low, tilt) for share in np.linspace(0, 1, 8)]
-
-
+CURLED = -178.0  # degrees of tilt at which the mouth is level
+HEAP_RADIUS = 2.15  # m from the axis of the house to the bucket's pin while it is tipped out
+HEAP_SWING = np.radians(72.0)
 TRAVEL = (2.05, 0.0, 1.35, -165.0)
-FIRST_DIG, FIRST_SWEEP, SECOND_DIG, SECOND_SWEEP = 2.8, 13.6, 21.6, 32.2
+STARTS = (2.2, 19.4, 36.6)
 
 WAYPOINTS = [
     (0.0, *TRAVEL),
-    *dig(FIRST_DIG, 3.60, -0.12),
-    (FIRST_DIG + 9.2, 1.95, -0.55, 0.75, -115.0),
-    *sweep(FIRST_SWEEP, 1.30),
-    (FIRST_SWEEP + 5.6, 1.80, 1.22, 1.10, -125.0),
-    (FIRST_SWEEP + 6.8, 2.90, 0.20, 1.00, -80.0),
-    *dig(SECOND_DIG, 3.70, -0.22),
-    (SECOND_DIG + 9.2, 1.95, -0.55, 0.75, -115.0),
-    *sweep(SECOND_SWEEP, 1.10),
-    (SECOND_SWEEP + 5.6, 1.80, 1.02, 1.10, -135.0),
-    (SECOND_SWEEP + 7.6, *TRAVEL),
+    *load(STARTS[0], 3.60, -0.12, HEAP_SWING),
+    *load(STARTS[1], 3.65, -0.22, HEAP_SWING),
+    *load(STARTS[2], 3.70, -0.30, HEAP_SWING),
+    (STARTS[2] + 18.0, *TRAVEL),
 ]
 
-PHASES = [
-    ("reach", 0.0, FIRST_DIG),
-    ("enter", FIRST_DIG, FIRST_DIG + 1.6),
-    ("dig", FIRST_DIG + 1.6, FIRST_DIG + 6.2),
-    ("rise", FIRST_DIG + 6.2, FIRST_DIG + 7.8),
-    ("lift", FIRST_DIG + 7.8, FIRST_SWEEP),
-    ("sweep", FIRST_SWEEP, FIRST_SWEEP + 4.2),
-    ("return", FIRST_SWEEP + 4.2, SECOND_DIG),
-    ("enter_again", SECOND_DIG, SECOND_DIG + 1.6),
-    ("dig_again", SECOND_DIG + 1.6, SECOND_DIG + 6.2),
-    ("rise_again", SECOND_DIG + 6.2, SECOND_DIG + 7.8),
-    ("lift_again", SECOND_DIG + 7.8, SECOND_SWEEP),
-    ("sweep_again", SECOND_SWEEP, SECOND_SWEEP + 4.2),
-    ("travel", SECOND_SWEEP + 4.2, SECOND_SWEEP + 7.6),
-]
+STEPS = (("enter", 0.0, 1.4), ("dig", 1.4, 5.2), ("curl", 5.2, 7.9), ("lift", 7.9, 9.2), ("swing", 9.2, 12.6), ("tip", 12.6, 15.0))
+PHASES = [("reach", 0.0, STARTS[0])]
+for number, (begin, following) in enumerate(zip(STARTS, (*STARTS[1:], STARTS[-1] + 18.0)), 1):
+    PHASES += [(f"{step}_{number}", begin + start, begin + end) for step, start, end in STEPS]
+    PHASES += [(f"return_{number}", begin + STEPS[-1][2], following)]
 
 
 def monotone_cubic(knots, values, at):
@@ -174,7 +159,7 @@ def main():
     times, joints = cycle()
     positions = [", ".join(f"{value:.5f}" for value in row) for row in np.column_stack(list(joints.values()))]
     lines = [
-        "# The excavator digs a trench in two passes and sweeps what it dug into a heap on its left: keyframes for scripts/joint_player.",
+        "# The excavator digs a trench and tips three buckets of sand into a heap on its left: keyframes for scripts/joint_player.",
         "# Made by make_dig_cycle.py from waypoints of the cutting edge; change those there and run it again.",
         "# Radians and metres, in the order of `joints`; linear in between. Times in seconds from the start of the motion.",
         "",

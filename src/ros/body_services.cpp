@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "shallow_sand/bodies/body_geometry.h"
 #include "shallow_sand/bodies/robot_links.h"
 
 namespace shallow_sand {
@@ -46,6 +47,14 @@ TriangleMesh meshOf(const AddBody::Request& request) {
   Eigen::Vector3d scale(request.scale.x, request.scale.y, request.scale.z);
   if (scale.isZero(0.0)) scale.setOnes();
   return readMesh(request.mesh, scale);
+}
+
+/// @throws InvalidParameter if it cannot be sampled
+BodyGeometry geometryOf(const AddBody::Request& request, double sand_spacing) {
+  BodyGeometryOptions options;
+  if (!request.mesh_as.empty()) options.shape = linkShapeFromString(request.mesh_as, "mesh_as");
+  if (!request.mesh.empty()) options.cache = defaultCacheFolder();
+  return makeBodyGeometry(meshOf(request), sand_spacing, options);
 }
 
 /// @throws InvalidParameter if it is no pose
@@ -138,17 +147,18 @@ bool BodyServices::add(AddBody::Request& request, AddBody::Response& response) {
       if (!request.follow) poseOf(frame);
     });
     const ros::WallTime begin = ros::WallTime::now();
-    const auto field = bodyField(meshOf(request), sand_spacing_);
+    const BodyGeometry geometry = geometryOf(request, sand_spacing_);
     const double duration = (ros::WallTime::now() - begin).toSec();
     inLoop([&] {
       if (request.follow) {
-        bodies_.addFollowing(request.name, "", {frame, pose}, field);
+        bodies_.addFollowing(request.name, "", {frame, pose}, geometry.field);
       } else {
-        bodies_.addPlaced(request.name, poseOf(frame) * pose, field);
+        bodies_.addPlaced(request.name, poseOf(frame) * pose, geometry.field);
       }
     });
     std::ostringstream done;
-    done << "sampled in " << duration << " s";
+    done << (geometry.from_cache ? "taken from the cache" : "sampled") << " in " << duration << " s";
+    for (const std::string& note : geometry.notes) done << "; " << note;
     return done.str();
   });
 }

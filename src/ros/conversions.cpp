@@ -5,6 +5,26 @@
 #include "shallow_sand/surface/surface.h"
 
 namespace shallow_sand {
+namespace {
+
+void add(visualization_msgs::Marker& marker, const Surface& surface,
+         const std::vector<std::size_t>& corners) {
+  for (const std::size_t corner : corners) {
+    geometry_msgs::Point point;
+    point.x = surface.points[corner].x();
+    point.y = surface.points[corner].y();
+    point.z = surface.points[corner].z();
+    marker.points.push_back(point);
+    std_msgs::ColorRGBA color;
+    color.r = surface.colors[corner].x();
+    color.g = surface.colors[corner].y();
+    color.b = surface.colors[corner].z();
+    color.a = 1.0f;
+    marker.colors.push_back(color);
+  }
+}
+
+}  // namespace
 
 sensor_msgs::PointCloud2 toPointCloud(const Grid& grid, const Fields& fields, const std::string& frame,
                                       const ros::Time& stamp) {
@@ -34,7 +54,6 @@ sensor_msgs::PointCloud2 toPointCloud(const Grid& grid, const Fields& fields, co
 
 visualization_msgs::Marker toMarker(const Grid& grid, const Fields& fields, const std::string& frame,
                                     const ros::Time& stamp) {
-  const Surface surface = surfaceOf(grid, fields);
   visualization_msgs::Marker marker;
   marker.header.frame_id = frame;
   marker.header.stamp = stamp;
@@ -44,22 +63,12 @@ visualization_msgs::Marker toMarker(const Grid& grid, const Fields& fields, cons
   marker.pose.orientation.w = 1.0;
   marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
   marker.color.a = 1.0f;
-  const std::vector<std::size_t> corners = surfaceTriangles(grid);
-  marker.points.reserve(corners.size());
-  marker.colors.reserve(corners.size());
-  for (const std::size_t corner : corners) {
-    geometry_msgs::Point point;
-    point.x = surface.points[corner].x();
-    point.y = surface.points[corner].y();
-    point.z = surface.points[corner].z();
-    marker.points.push_back(point);
-    std_msgs::ColorRGBA color;
-    color.r = surface.colors[corner].x();
-    color.g = surface.colors[corner].y();
-    color.b = surface.colors[corner].z();
-    color.a = 1.0f;
-    marker.colors.push_back(color);
-  }
+  const std::vector<std::size_t> ground = surfaceTriangles(grid);
+  const std::vector<std::size_t> loads = loadTriangles(grid, fields);
+  marker.points.reserve(ground.size() + loads.size());
+  marker.colors.reserve(ground.size() + loads.size());
+  add(marker, groundSurface(grid, fields), ground);
+  if (!loads.empty()) add(marker, visibleSurface(grid, fields), loads);
   return marker;
 }
 

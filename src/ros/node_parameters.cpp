@@ -56,10 +56,14 @@ void takeBetween(YAML::Node& parameters, const std::string& source, const std::s
   throw SceneError(source + ": " + key + ": " + std::to_string(value) + "; expected " + expected);
 }
 
-void takePatterns(YAML::Node& parameters, const std::string& source, LinkPatterns& links) {
+/// Which links of a robot dig, and as what.
+void takeLinks(YAML::Node& parameters, const std::string& source, RobotParameters& robot) {
   const std::string expected = "a list of patterns of link names, such as ['wheel_*']";
-  take(parameters, source, "include", expected, links.include);
-  take(parameters, source, "exclude", expected, links.exclude);
+  take(parameters, source, "include", expected, robot.links.include);
+  take(parameters, source, "exclude", expected, robot.links.exclude);
+  if (!parameters["shapes"]) return;
+  robot.shapes = readLinkShapes(parameters["shapes"], source);
+  parameters.remove("shapes");
 }
 
 RobotParameters readRobot(YAML::Node robot, const std::string& source) {
@@ -73,10 +77,10 @@ RobotParameters readRobot(YAML::Node robot, const std::string& source) {
   take(robot, source, "description", "the name of a parameter", parameters.description);
   take(robot, source, "name", "a text", parameters.name);
   take(robot, source, "tf_prefix", "a text", parameters.tf_prefix);
-  takePatterns(robot, source, parameters.links);
+  takeLinks(robot, source, parameters);
   for (const auto& unknown : robot) {
     throw SceneError(source + ": " + unknown.first.as<std::string>() +
-                     ": unknown; expected one of description, name, tf_prefix, include, exclude");
+                     ": unknown; expected one of description, name, tf_prefix, include, exclude, shapes");
   }
   return parameters;
 }
@@ -101,13 +105,15 @@ std::vector<RobotParameters> takeRobots(YAML::Node& parameters, const std::strin
   RobotParameters single;
   take(parameters, source, "robot_description", "the name of a parameter", single.description);
   take(parameters, source, "tf_prefix", "a text", single.tf_prefix);
-  takePatterns(parameters, source, single.links);
+  takeLinks(parameters, source, single);
   std::vector<YAML::Node> list;
   take(parameters, source, "robots", "a list of maps", list);
   if (list.empty()) return {single};
-  if (!single.tf_prefix.empty() || !single.links.include.empty() || !single.links.exclude.empty()) {
-    throw SceneError(source +
-                     ": robots: given beside tf_prefix, include or exclude; expected these within robots");
+  if (!single.tf_prefix.empty() || !single.links.include.empty() || !single.links.exclude.empty() ||
+      !single.shapes.empty()) {
+    throw SceneError(
+        source +
+        ": robots: given beside tf_prefix, include, exclude or shapes; expected these within robots");
   }
   return readRobots(YAML::Node(list), source);
 }

@@ -31,7 +31,7 @@ void Robot::findDescription(const ros::NodeHandle& node) {
   }
   if (urdf == urdf_) return;
   urdf_ = urdf;
-  loader_ = std::make_unique<LinkLoader>(urdf, parameters_.links, sand_spacing_);
+  loader_ = std::make_unique<LinkLoader>(urdf, parameters_.links, parameters_.shapes, sand_spacing_);
 }
 
 void Robot::addLink(const LinkLoader::Link& link, SandBodies& bodies) const {

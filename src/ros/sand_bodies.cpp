@@ -34,11 +34,6 @@ bool mayTell(ros::WallTime& told, double period) {
 
 }  // namespace
 
-std::shared_ptr<const DistanceField> bodyField(const TriangleMesh& mesh, double sand_spacing) {
-  return std::make_shared<const DistanceField>(
-      computeDistanceField(mesh, distanceSpacing(mesh, sand_spacing)));
-}
-
 SandBodies::SandBodies(const NodeParameters& parameters, const TransformReader& transforms,
                        Simulator& simulator)
     : sand_frame_(parameters.scene.parameters.grid.frame),

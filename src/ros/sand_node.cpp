@@ -19,11 +19,18 @@ constexpr double kLongestFrame = 0.1;
 /// A mesh takes 240 bytes a cell, and ROS drops messages of a gigabyte.
 constexpr std::size_t kMostCellsShown = 4000000;
 
+Simulator build(const Scene& scene) {
+  std::vector<std::string> notes;
+  Simulator simulator = buildSimulator(scene, &notes);
+  for (const std::string& note : notes) ROS_INFO_STREAM(note);
+  return simulator;
+}
+
 }  // namespace
 
 SandNode::SandNode()
     : parameters_(readNodeParameters(private_node_)),
-      simulator_(buildSimulator(parameters_.scene)),
+      simulator_(build(parameters_.scene)),
       bodies_(parameters_, transforms_, simulator_),
       services_(parameters_.scene.parameters.grid.frame, simulator_.grid().spacing, bodies_) {
   for (const RobotParameters& robot : parameters_.robots) {

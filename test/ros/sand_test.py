@@ -4,10 +4,12 @@ import tempfile
 import threading
 import time
 
+import numpy
 import rospy
 from geometry_msgs.msg import TransformStamped
 from roslib.packages import find_node
 from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import PointCloud2
 from shallow_sand.msg import Status
 from tf2_msgs.msg import TFMessage
 
@@ -96,6 +98,19 @@ class RunningNode:
         after = self.status(lambda status: status.simulated_time > before)
         test.assertLess(after.volume_error, 1e-6)
         test.assertGreater(after.volume, 0.0)
+
+
+def wait_for_depth(node, x, y, condition, limit=20.0):
+    """Until the depth of the sand in the cell at a place is as wanted."""
+    deadline = time.monotonic() + limit
+    while time.monotonic() < deadline:
+        cloud = rospy.wait_for_message(node.name + "/points", PointCloud2, timeout=10.0)
+        values = numpy.frombuffer(cloud.data, dtype=numpy.float32).reshape(cloud.height, cloud.width, -1)
+        spacing = SCENE["grid"]["spacing"]
+        depth = values[int(y / spacing), int(x / spacing), -1]
+        if condition(depth):
+            return
+    raise AssertionError(f"the depth at ({x}, {y}) is not as wanted within {limit} s but {depth}")
 
 
 class Place:

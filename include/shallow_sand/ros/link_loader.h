@@ -9,6 +9,8 @@
 
 #include "shallow_sand/bodies/distance_field.h"
 #include "shallow_sand/bodies/link_selection.h"
+#include "shallow_sand/bodies/robot_links.h"
+#include "shallow_sand/ros/link_shapes.h"
 
 namespace shallow_sand {
 
@@ -21,7 +23,7 @@ class LinkLoader {
     std::string name;
     std::shared_ptr<const DistanceField> field;
   };
-  LinkLoader(std::string urdf, LinkPatterns patterns, double sand_spacing);
+  LinkLoader(std::string urdf, LinkPatterns patterns, LinkShapes shapes, double sand_spacing);
   /// Waits for the link under way.
   ~LinkLoader();
 
@@ -29,8 +31,15 @@ class LinkLoader {
   std::vector<Link> takeReady();
 
  private:
-  void load(const std::string& urdf, const LinkPatterns& patterns, double sand_spacing);
+  void load();
+  /// The field of a link, which the log tells of. @param count such as "3 of 7"
+  std::shared_ptr<const DistanceField> sample(const std::string& robot, const LinkGeometry& link,
+                                              const std::string& count) const;
 
+  const std::string urdf_;
+  const LinkPatterns patterns_;
+  const LinkShapes shapes_;
+  const double sand_spacing_;
   std::atomic<bool> stop_{false};
   std::mutex mutex_;
   std::vector<Link> ready_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "shallow_sand/bodies/link_selection.h"
+#include "shallow_sand/ros/link_shapes.h"
 #include "shallow_sand/scene/scene.h"
 
 namespace shallow_sand {
@@ -16,6 +17,7 @@ struct RobotParameters {
   std::string name;       ///< in ~status and the log; empty: tf_prefix without its slash, else the URDF's
   std::string tf_prefix;  ///< put before link names to get their tf frames
   LinkPatterns links;     ///< which of them
+  LinkShapes shapes;      ///< and what stands for them
 };
 
 /// All private parameters of sand_node.

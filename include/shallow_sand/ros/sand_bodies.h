@@ -18,9 +18,6 @@
 
 namespace shallow_sand {
 
-/// A triangle mesh as the sand sees it. @throws InvalidParameter if the mesh cannot be sampled
-std::shared_ptr<const DistanceField> bodyField(const TriangleMesh& mesh, double sand_spacing);
-
 /// What moves a body that follows tf.
 struct TfFrame {
   std::string name;
