@@ -28,7 +28,9 @@ struct FlowLoads {
   SHALLOW_SAND_HOST_DEVICE bool mayFlow(int i, int j, float highest) const {
     if (!hangs(i, j)) return false;
     const long long at = step.index(i, j);
-    return columns.hidden.depth[at] > 0.0f || highest > contact.top[at];
+    // Fluxes measure from a level surface, and round: where one side of a face flows, the other must, too.
+    const float margin = (fabsf(step.sand.level_x) + fabsf(step.sand.level_y)) + 0.01f * step.sand.spacing;
+    return columns.hidden.depth[at] > 0.0f || highest + margin > contact.top[at];
   }
   SHALLOW_SAND_HOST_DEVICE float surface(int i, int j) const {
     if (!onGrid(i, j)) return -1e30f;
