@@ -162,9 +162,9 @@ class Sampler {
       missing = least_thickness_;
     }
     // Parts that overlap have faces inside of the body: there the distance is 0, and must not look like the
-    // surface to a ray that runs along one.
-    const double distance =
-        isInside(winding) ? -std::max(nearest.distance, 1e-6 * field_.spacing) : nearest.distance;
+    // surface to a ray that runs along one. On the surface itself the winding number is about a half.
+    const double least = std::abs(winding) > 0.75 ? 1e-6 * field_.spacing : 0.0;
+    const double distance = isInside(winding) ? -std::max(nearest.distance, least) : nearest.distance;
     at(block.first.x(), block.first.y(), block.first.z()) = static_cast<float>(distance - missing / 2.0);
   }
 

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Of the file's layout and of how fields are computed: raise it when one of them changes.
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30;
 const char kEnding[] = ".field";
 constexpr std::size_t kNameLength = 36;  ///< of a UUID as text
