@@ -75,7 +75,7 @@ class Excavation(unittest.TestCase):
         deepest = path[:, 2].min()
         middle = points[numpy.argmin(numpy.abs(points[:, 0, 1]))]
         within = (middle[:, 0] > path[:, 0].min()) & (middle[:, 0] < path[:, 0].max())
-        length = numpy.count_nonzero(within & (middle[:, 2] < 0.7 * deepest)) * spacing
+        length = numpy.count_nonzero(within & (middle[:, 2] < 0.5 * deepest)) * spacing
         rospy.loginfo("trench: %.2f m deep over %.2f m; the edge went to %.2f m", -middle[within, 2].min(), length, deepest)
         self.assertLess(deepest, -0.25)
         self.assertGreater(length, 0.5)
