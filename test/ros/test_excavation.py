@@ -11,6 +11,7 @@ from shallow_sand.msg import BodyStatus, Status
 from std_msgs.msg import Bool, String
 
 GRID = "/sand_node/grid"
+BED = "/sand_node/bed"
 CYCLE_LIMIT = 120.0  # s; the cycle takes 55
 TIPPED = numpy.array([0.7, 2.2])  # m; where the bucket is tipped out
 
@@ -47,10 +48,10 @@ def wait_for_rest(limit):
 
 
 def surface():
-    """Columns x, y, z of the cloud, as rows × columns × 3."""
+    """Columns x, y, z of the cloud and the depth of all sand, as rows × columns × 4."""
     cloud = rospy.wait_for_message("/sand_node/points", PointCloud2, timeout=10.0)
     values = numpy.frombuffer(cloud.data, dtype=numpy.float32)
-    return values.reshape(cloud.height, cloud.width, cloud.point_step // 4)[:, :, :3].astype(float)
+    return values.reshape(cloud.height, cloud.width, cloud.point_step // 4)[:, :, :4].astype(float)
 
 
 class Excavation(unittest.TestCase):
@@ -75,9 +76,12 @@ class Excavation(unittest.TestCase):
         deepest = path[:, 2].min()
         middle = points[numpy.argmin(numpy.abs(points[:, 0, 1]))]
         within = (middle[:, 0] > path[:, 0].min()) & (middle[:, 0] < path[:, 0].max())
-        length = numpy.count_nonzero(within & (middle[:, 2] < 0.5 * deepest)) * spacing
-        rospy.loginfo("trench: %.2f m deep over %.2f m; the edge went to %.2f m", -middle[within, 2].min(), length, deepest)
+        # From the depth of the sand: where the bucket stands, the cloud shows what is left in it.
+        ground = middle[:, 3] + rospy.get_param(BED)["elevation"]
+        length = numpy.count_nonzero(within & (ground < 0.25 * deepest)) * spacing
+        rospy.loginfo("trench: %.2f m deep over %.2f m; the edge went to %.2f m", -ground[within].min(), length, deepest)
         self.assertLess(deepest, -0.25)
+        self.assertLess(ground[within].min(), 0.6 * deepest)
         self.assertGreater(length, 0.5)
 
     def check_heap(self, points, spacing):
