@@ -92,7 +92,8 @@ class CudaExecutor {
     return intAsFloat(bits);
   }
 
-  /// Parts of the window that hold all cells for which function(i, j) is above 0: the whole of it, or nothing.
+  /// Parts of the window that hold all cells for which function(i, j) is above 0: the whole of it, or
+  /// nothing.
   template <class Function>
   std::vector<Window> partsWith(const Window& window, const Function& function) {
     if (maximumOverCells(window, function) > 0.0f) return {window};
