@@ -8,13 +8,9 @@
 namespace shallow_sand {
 namespace {
 
-bool matches(const std::string& pattern, const std::string& name) {
-  return fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
-}
-
 bool anyMatches(const std::vector<std::string>& patterns, const std::string& name) {
   return std::any_of(patterns.begin(), patterns.end(),
-                     [&](const std::string& pattern) { return matches(pattern, name); });
+                     [&](const std::string& pattern) { return matchesPattern(pattern, name); });
 }
 
 bool isChosen(const LinkPatterns& patterns, const std::string& name) {
@@ -27,6 +23,21 @@ void takeCollisionsOut(tinyxml2::XMLElement& link) {
 }
 
 }  // namespace
+
+bool matchesPattern(const std::string& pattern, const std::string& name) {
+  return fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
+}
+
+std::vector<std::string> unmatchedPatterns(const std::vector<std::string>& patterns,
+                                           const std::vector<std::string>& names) {
+  std::vector<std::string> unmatched;
+  for (const std::string& pattern : patterns) {
+    const bool used = std::any_of(names.begin(), names.end(),
+                                  [&](const std::string& name) { return matchesPattern(pattern, name); });
+    if (!used) unmatched.push_back(pattern);
+  }
+  return unmatched;
+}
 
 LinkSelection selectLinks(const std::string& urdf_xml, const LinkPatterns& patterns) {
   LinkSelection selection;
@@ -42,11 +53,8 @@ LinkSelection selectLinks(const std::string& urdf_xml, const LinkPatterns& patte
     if (!isChosen(patterns, name)) takeCollisionsOut(*link);
   }
   for (const auto* list : {&patterns.include, &patterns.exclude}) {
-    for (const std::string& pattern : *list) {
-      const bool used = std::any_of(selection.available.begin(), selection.available.end(),
-                                    [&](const std::string& name) { return matches(pattern, name); });
-      if (!used) selection.unmatched.push_back(pattern);
-    }
+    const std::vector<std::string> unmatched = unmatchedPatterns(*list, selection.available);
+    selection.unmatched.insert(selection.unmatched.end(), unmatched.begin(), unmatched.end());
   }
   tinyxml2::XMLPrinter printer;
   document.Print(&printer);

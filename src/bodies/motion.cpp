@@ -35,6 +35,10 @@ void requireRigid(const Eigen::Isometry3d& pose) {
 
 }  // namespace
 
+Twist twistOf(const Eigen::Vector3d& way, const Eigen::AngleAxisd& turn, double duration) {
+  return {way / duration, turn.axis() * (turn.angle() / duration)};
+}
+
 void Motion::append(double time, const Eigen::Isometry3d& pose) {
   if (!std::isfinite(time)) throw InvalidParameter("time", text(time), "a finite time in seconds");
   if (!keys_.empty() && time <= keys_.back().time) {
@@ -79,11 +83,10 @@ Twist Motion::twistAt(double time) const {
   if (segment < 0) return {};
   const Key& from = keys_[static_cast<std::size_t>(segment)];
   const Key& to = keys_[static_cast<std::size_t>(segment) + 1];
-  const double duration = to.time - from.time;
   // Left of `from`, the turn's axis is one of the grid's frame; AngleAxis takes the short way round, as slerp
   // does.
   const Eigen::AngleAxisd turn(to.rotation * from.rotation.conjugate());
-  return {(to.position - from.position) / duration, turn.axis() * (turn.angle() / duration)};
+  return twistOf(to.position - from.position, turn, to.time - from.time);
 }
 
 }  // namespace shallow_sand

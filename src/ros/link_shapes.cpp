@@ -1,21 +1,12 @@
 #include "shallow_sand/ros/link_shapes.h"
 
-#include <fnmatch.h>
 #include <yaml-cpp/yaml.h>
 
-#include <algorithm>
-
+#include "shallow_sand/bodies/link_selection.h"
 #include "shallow_sand/core/parameters.h"
 #include "shallow_sand/scene/scene.h"
 
 namespace shallow_sand {
-namespace {
-
-bool matches(const std::string& pattern, const std::string& name) {
-  return fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
-}
-
-}  // namespace
 
 LinkShapes readLinkShapes(const YAML::Node& map, const std::string& source) {
   LinkShapes shapes;
@@ -39,7 +30,7 @@ LinkShape shapeOf(const LinkShapes& shapes, const std::string& link) {
   LinkShape shape = LinkShape::exact;
   std::size_t longest = 0;
   for (const auto& [pattern, candidate] : shapes) {
-    if (pattern.size() < longest || !matches(pattern, link)) continue;
+    if (pattern.size() < longest || !matchesPattern(pattern, link)) continue;
     longest = pattern.size();
     shape = candidate;
   }
@@ -47,13 +38,9 @@ LinkShape shapeOf(const LinkShapes& shapes, const std::string& link) {
 }
 
 std::vector<std::string> unmatchedPatterns(const LinkShapes& shapes, const std::vector<std::string>& links) {
-  std::vector<std::string> unmatched;
-  for (const auto& entry : shapes) {
-    const bool used = std::any_of(links.begin(), links.end(),
-                                  [&](const std::string& link) { return matches(entry.first, link); });
-    if (!used) unmatched.push_back(entry.first);
-  }
-  return unmatched;
+  std::vector<std::string> patterns;
+  for (const auto& entry : shapes) patterns.push_back(entry.first);
+  return unmatchedPatterns(patterns, links);
 }
 
 }  // namespace shallow_sand

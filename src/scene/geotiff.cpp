@@ -40,13 +40,6 @@ auto contactBands(State& state) {
                                                                     {"contact_velocity_z", &c.velocity_z}}};
 }
 
-bool hasBand(GDALDataset& dataset, const std::string& name) {
-  for (int number = 1; number <= dataset.GetRasterCount(); ++number) {
-    if (dataset.GetRasterBand(number)->GetDescription() == name) return true;
-  }
-  return false;
-}
-
 DatasetPointer createTiff(const std::string& path, const Grid& grid, int bands) {
   const std::array<const char*, 6> options{"COMPRESS=DEFLATE", "PREDICTOR=3", "INTERLEAVE=BAND",
                                            "BIGTIFF=IF_SAFER", "TILED=YES",   nullptr};
@@ -78,11 +71,17 @@ Metadata metadataOf(GDALDataset& dataset) {
   return metadata;
 }
 
-GDALRasterBand& bandNamed(GDALDataset& dataset, const std::string& name) {
+/// Null if there is none of that name.
+GDALRasterBand* findBand(GDALDataset& dataset, const std::string& name) {
   for (int number = 1; number <= dataset.GetRasterCount(); ++number) {
-    GDALRasterBand& band = *dataset.GetRasterBand(number);
-    if (band.GetDescription() == name) return band;
+    GDALRasterBand* band = dataset.GetRasterBand(number);
+    if (band->GetDescription() == name) return band;
   }
+  return nullptr;
+}
+
+GDALRasterBand& bandNamed(GDALDataset& dataset, const std::string& name) {
+  if (GDALRasterBand* band = findBand(dataset, name)) return *band;
   throw InvalidParameter("band " + name, "missing", "a state that sand_run --save wrote");
 }
 
@@ -100,7 +99,7 @@ Snapshot readState(GDALDataset& dataset, const SimulatorParameters& parameters, 
     }
   };
   read(fieldBands(state));
-  if (hasBand(dataset, "load")) read(loadBands(state));
+  if (findBand(dataset, "load") != nullptr) read(loadBands(state));
   if (!state.contacts.windows.empty()) read(contactBands(state));
   return state;
 }

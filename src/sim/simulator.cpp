@@ -54,6 +54,12 @@ void checkMaterial(const MaterialFields& fields, Material material, const Grid& 
   check("material.dilute_layer.depth", fields.layer_depth, &Material::layer_depth);
 }
 
+/// From one pose to another; of a rotation by nothing, roundings would make an axis.
+Eigen::AngleAxisd turnBetween(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to) {
+  if (to.linear() == from.linear()) return Eigen::AngleAxisd::Identity();
+  return Eigen::AngleAxisd(to.linear() * from.linear().transpose());
+}
+
 double sum(const std::vector<float>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
 struct ChosenBackend {
@@ -350,7 +356,7 @@ class Simulator::Implementation {
     for (const Body& body : bodies_) {
       if (body.motion.empty()) continue;
       const Eigen::Isometry3d pose = body.motion.poseAt(time_);
-      const double turned = Eigen::AngleAxisd(pose.linear() * body.cleared_at.linear().transpose()).angle();
+      const double turned = turnBetween(body.cleared_at, pose).angle();
       const double moved = (pose.translation() - body.cleared_at.translation()).norm() + turned * body.reach;
       if (moved > kLongestWayUncleared * grid_.spacing) return true;
     }
@@ -412,13 +418,8 @@ class Simulator::Implementation {
     if (std::isinf(body.cleared_time)) return body.motion.twistAt(time_);
     const double duration = time_ - body.cleared_time;
     if (!(duration > 0.0)) return {};
-    Twist twist;
-    twist.linear = (pose.translation() - body.cleared_at.translation()) / duration;
-    // Of a rotation by nothing, roundings would make an axis.
-    if (pose.linear() == body.cleared_at.linear()) return twist;
-    const Eigen::AngleAxisd turn(pose.linear() * body.cleared_at.linear().transpose());
-    twist.angular = turn.axis() * (turn.angle() / duration);
-    return twist;
+    return twistOf(pose.translation() - body.cleared_at.translation(), turnBetween(body.cleared_at, pose),
+                   duration);
   }
 
   PlacedBody place(std::size_t number) const {

@@ -5,9 +5,9 @@
 #include <random>
 
 #include "benchmark/maps.h"
+#include "benchmark/run_benchmarks.h"
 #include "benchmark/timing.h"
 #include "shallow_sand/bodies/distance_field.h"
-#include "shallow_sand/device/passive_threads.h"
 
 /// What bodies add to the cost of a step; see README.md here. The same sand runs by turns with and without
 /// bodies, so that what else a machine does falls on both.
@@ -106,12 +106,4 @@ void registerAll() {
 }  // namespace
 }  // namespace shallow_sand
 
-int main(int argc, char** argv) {
-  shallow_sand::waitPassively(argv);
-  shallow_sand::registerAll();
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
-}
+int main(int argc, char** argv) { return shallow_sand::runBenchmarks(argc, argv, shallow_sand::registerAll); }

@@ -4,8 +4,8 @@
 
 #include "benchmark/busy_processes.h"
 #include "benchmark/references.h"
+#include "benchmark/run_benchmarks.h"
 #include "benchmark/timing.h"
-#include "shallow_sand/device/passive_threads.h"
 
 /// How fast the CPU's step is, beside what bounds it and what it is compared to; see README.md here.
 /// Everything that a ratio compares runs by turns, so that what else a machine does falls on both.
@@ -121,12 +121,4 @@ void registerAll() {
 }  // namespace
 }  // namespace shallow_sand
 
-int main(int argc, char** argv) {
-  shallow_sand::waitPassively(argv);
-  shallow_sand::registerAll();
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
-}
+int main(int argc, char** argv) { return shallow_sand::runBenchmarks(argc, argv, shallow_sand::registerAll); }

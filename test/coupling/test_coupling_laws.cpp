@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "mirrored_field.h"
 #include "random_bodies.h"
 #include "random_fields.h"
 #include "random_seed.h"
@@ -168,16 +169,6 @@ TEST(CouplingLaws, SandSettlesAroundARestingBodyAndStays) {
   }
 }
 
-/// Samples on the very surface are inside or outside by a rounding, not alike on both sides.
-DistanceField mirroredField(DistanceField field) {
-  const std::size_t across = static_cast<std::size_t>(field.samples[0]);
-  for (std::size_t row = 0; row < field.distance.size(); row += across) {
-    for (std::size_t i = 0; i < across / 2; ++i)
-      field.distance[row + across - 1 - i] = field.distance[row + i];
-  }
-  return field;
-}
-
 /// A box that is pushed along y and rolls about x, through a bed of even depth, in the middle of the grid:
 /// everything is its own mirror image. Lengths are binary fractions and the middles of columns lie on samples
 /// of the distance field, so that left and right are rounded alike.
@@ -200,9 +191,8 @@ TEST(CouplingLaws, WakeOfAMirrorSymmetricBodyIsMirrorSymmetricInEveryBit) {
       return spacing * (least + static_cast<int>(random() % static_cast<unsigned>(most - least + 1)));
     };
     const TriangleMesh box = triangulate(Box{{cells(4, 10), cells(4, 8), cells(4, 8)}});
-    const std::size_t body = simulator.addBody(
-        "box",
-        std::make_shared<const DistanceField>(mirroredField(computeDistanceField(box, 0.5 * spacing))));
+    const std::size_t body = simulator.addBody("box", std::make_shared<const DistanceField>(mirroredField(
+                                                          computeDistanceField(box, 0.5 * spacing), 0)));
     const double middle = 0.5 * columns * spacing;
     const double height = uniform(random, 0.3, 1.5) * depth;
     const double turn = uniform(random, -1.0, 1.0);  // about x, which leaves it mirror symmetric

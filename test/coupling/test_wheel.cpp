@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "coupling/bodies_in_sand.h"
+#include "mirrored_field.h"
 
 namespace shallow_sand {
 namespace {
@@ -27,30 +28,15 @@ TriangleMesh wheelMesh() {
   return mesh;
 }
 
-/// Far from the surface a distance is only a lower bound, and not the same on both sides.
-DistanceField mirroredAlongY(DistanceField field) {
-  const int across = field.samples[0];
-  const int middle = field.samples[1] / 2;
-  for (int k = 0; k < field.samples[2]; ++k) {
-    for (int j = 0; j < middle; ++j) {
-      const auto row = [&](int number) {
-        return field.distance.begin() + (k * field.samples[1] + number) * across;
-      };
-      std::copy(row(j), row(j) + across, row(field.samples[1] - 1 - j));
-    }
-  }
-  return field;
-}
-
 /// A wheel that travels along x while its rim turns as many times as fast.
 Simulator wheelSimulator(double rim_over_travel, double travel) {
   const Scene scene = levelSand({kLength, kRows * kSpacing}, kSpacing, kSurface);
   const Eigen::Vector3d from(kStartX, kMiddleY, kSurface - kSunk + kRadius);
   Simulator simulator = buildSimulator(scene);
   const TriangleMesh mesh = wheelMesh();
-  const std::size_t wheel = simulator.addBody(
-      "wheel", std::make_shared<const DistanceField>(
-                   mirroredAlongY(computeDistanceField(mesh, distanceSpacing(mesh, kSpacing)))));
+  const std::size_t wheel =
+      simulator.addBody("wheel", std::make_shared<const DistanceField>(mirroredField(
+                                     computeDistanceField(mesh, distanceSpacing(mesh, kSpacing)), 1)));
   const std::vector<PoseKey> motion =
       spinningMotion(from, from + Eigen::Vector3d(travel, 0.0, 0.0), kDuration, Eigen::Vector3d::UnitY(),
                      rim_over_travel * kSpeed / kRadius);

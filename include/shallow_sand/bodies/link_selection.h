@@ -11,6 +11,13 @@ struct LinkPatterns {
   std::vector<std::string> exclude;  ///< and none of these
 };
 
+/// As fnmatch(3) has it.
+bool matchesPattern(const std::string& pattern, const std::string& name);
+
+/// Those patterns that match none of the names.
+std::vector<std::string> unmatchedPatterns(const std::vector<std::string>& patterns,
+                                           const std::vector<std::string>& names);
+
 struct LinkSelection {
   std::string urdf;                    ///< the description, collision elements of chosen links only
   std::vector<std::string> available;  ///< links with collision elements, in the order of the description

@@ -11,6 +11,9 @@ struct Twist {
   Eigen::Vector3d angular{0, 0, 0};  ///< [rad/s]
 };
 
+/// With which a body goes `way` [m] and makes a turn, both in `duration` [s].
+Twist twistOf(const Eigen::Vector3d& way, const Eigen::AngleAxisd& turn, double duration);
+
 /// Timed poses of a body in the grid's frame; between two of them the origin moves on a straight line and the
 /// body turns about one axis, both at constant rate. Before the first and after the last pose the body rests.
 class Motion {

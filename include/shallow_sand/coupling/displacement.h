@@ -65,8 +65,6 @@ struct Outflow {
   bool to_south;
   bool to_north;
 
-  SHALLOW_SAND_HOST_DEVICE int takers() const { return to_west + to_east + to_south + to_north; }
-
   /// A moving body pushes ahead and aside: sand goes behind it only if it can go nowhere else. Without this a
   /// blade one cell thick would let half of its sand through.
   SHALLOW_SAND_HOST_DEVICE void keepAhead(float velocity_x, float velocity_y) {
@@ -79,6 +77,17 @@ struct Outflow {
     to_east = east;
     to_south = south;
     to_north = north;
+  }
+
+  /// Divides what must go among those that take some, the ones behind a moving body last. Nothing goes if
+  /// there is none. Returns how many there are.
+  SHALLOW_SAND_HOST_DEVICE int divide(float depth, float velocity_x, float velocity_y) {
+    keepAhead(velocity_x, velocity_y);
+    const int takers = to_west + to_east + to_south + to_north;
+    if (takers == 0) return 0;
+    excess = depth;
+    share = depth / static_cast<float>(takers);
+    return takers;
   }
 };
 
@@ -98,28 +107,27 @@ struct DisplaceSand {
   float spacing;
   Window window;  ///< its outermost cells are clear of bodies or at the edge of the grid
 
-  SHALLOW_SAND_HOST_DEVICE bool inside(int i, int j) const { return window.holds(i, j); }
   SHALLOW_SAND_HOST_DEVICE long long index(int i, int j) const {
     return static_cast<long long>(j) * across + i;
   }
   SHALLOW_SAND_HOST_DEVICE bool nearer(int i, int j, int than) const {
-    return inside(i, j) && distance[index(i, j)] < than;
+    return window.holds(i, j) && distance[index(i, j)] < than;
   }
   SHALLOW_SAND_HOST_DEVICE bool lower(int i, int j, float than) const {
-    if (!inside(i, j)) return false;
+    if (!window.holds(i, j)) return false;
     const long long at = index(i, j);
     return (contact.isCovered(at) ? contact.top[at] : bed[at] + ground.depth[at]) < than;
   }
 
   /// Whether a column has more sand than room.
   SHALLOW_SAND_HOST_DEVICE bool overflows(int i, int j) const {
-    if (!inside(i, j)) return false;
+    if (!window.holds(i, j)) return false;
     const long long at = index(i, j);
     return ground.depth[at] > contact.clearance[at] || load.depth[at] > contact.headroom[at] ||
            contact.swept[at] != 0;
   }
   SHALLOW_SAND_HOST_DEVICE bool pushes(int i, int j) const {
-    return inside(i, j) && contact.length[index(i, j)] > 0.0f;
+    return window.holds(i, j) && contact.length[index(i, j)] > 0.0f;
   }
   /// Whether nothing comes to a column or goes from it.
   SHALLOW_SAND_HOST_DEVICE bool isLeftAlone(int i, int j) const {
@@ -132,12 +140,12 @@ struct DisplaceSand {
   /// body that comes down, if it is nearer to the edge.
   SHALLOW_SAND_HOST_DEVICE bool takesLoad(int i, int j, long long of) const {
     if (contact.swept[of] != 0) return lower(i, j, contact.top[of]);
-    return nearer(i, j, distance[of]) || (inside(i, j) && !contact.isCovered(index(i, j)));
+    return nearer(i, j, distance[of]) || (window.holds(i, j) && !contact.isCovered(index(i, j)));
   }
 
   SHALLOW_SAND_HOST_DEVICE Outflow ofGround(int i, int j) const {
     Outflow out{};
-    if (!inside(i, j)) return out;
+    if (!window.holds(i, j)) return out;
     const long long at = index(i, j);
     const float h = ground.depth[at];
     const float excess = h - contact.clearance[at];
@@ -147,11 +155,8 @@ struct DisplaceSand {
     out.to_east = nearer(i + 1, j, own);
     out.to_south = nearer(i, j - 1, own);
     out.to_north = nearer(i, j + 1, own);
-    out.keepAhead(contact.velocity_x[at], contact.velocity_y[at]);
-    const int takers = out.takers();
+    const int takers = out.divide(excess, contact.velocity_x[at], contact.velocity_y[at]);
     if (takers == 0) return out;
-    out.excess = excess;
-    out.share = excess / static_cast<float>(takers);
     // Eq. 20 for the part that goes: Ω_s moves with the body, the sand above it as before.
     const float solid = minimum(contact.length[at], excess) / static_cast<float>(takers);
     const float loose = (out.share - solid) / h;
@@ -162,7 +167,7 @@ struct DisplaceSand {
 
   SHALLOW_SAND_HOST_DEVICE Outflow ofLoad(int i, int j) const {
     Outflow out{};
-    if (!inside(i, j)) return out;
+    if (!window.holds(i, j)) return out;
     const long long at = index(i, j);
     const float excess = load.depth[at] - (contact.swept[at] != 0 ? 0.0f : contact.headroom[at]);
     if (!contact.isCovered(at) || !(excess > 0.0f)) return out;
@@ -170,11 +175,7 @@ struct DisplaceSand {
     out.to_east = takesLoad(i + 1, j, at);
     out.to_south = takesLoad(i, j - 1, at);
     out.to_north = takesLoad(i, j + 1, at);
-    out.keepAhead(contact.velocity_x[at], contact.velocity_y[at]);
-    const int takers = out.takers();
-    if (takers == 0) return out;
-    out.excess = excess;
-    out.share = excess / static_cast<float>(takers);
+    out.divide(excess, contact.velocity_x[at], contact.velocity_y[at]);
     out.with = {out.share * contact.velocity_x[at], out.share * contact.velocity_y[at]};
     return out;
   }
@@ -199,7 +200,7 @@ struct DisplaceSand {
   }
 
   SHALLOW_SAND_HOST_DEVICE float verticalVelocity(int i, int j) const {
-    if (!inside(i, j)) return 0.0f;
+    if (!window.holds(i, j)) return 0.0f;
     const long long at = index(i, j);
     return meanVerticalVelocity(contact.length[at], contact.velocity_z[at], ground.depth[at]);
   }
@@ -251,7 +252,6 @@ struct SandWithoutRoom {
   ContactFields contact;
   SandColumns columns;
   int across;
-  float spacing;
 
   SHALLOW_SAND_HOST_DEVICE float operator()(int i, int j) const {
     const long long at = static_cast<long long>(j) * across + i;
@@ -264,13 +264,10 @@ struct SandWithoutRoom {
 struct ContactSpeed {
   ContactFields contact;
   SandColumns columns;
-  const float* layer_fraction;  ///< null where the material is the same everywhere
-  const float* layer_depth;
-  SandConstants sand;
-  int across;
+  Step<true, false> step;  ///< the one that asks
 
   SHALLOW_SAND_HOST_DEVICE float operator()(int i, int j) const {
-    const long long at = static_cast<long long>(j) * across + i;
+    const long long at = step.index(i, j);
     const Sand load = columns.load(at);
     float speed = 0.0f;
     if (contact.length[at] > 0.0f || load.h > 0.0f) {
@@ -278,11 +275,10 @@ struct ContactSpeed {
                       fabsf(contact.velocity_z[at]));
     }
     if (columns.cover[at] != Cover::hanging || !(load.h > 0.0f)) return speed;
-    const LocalMaterial material =
-        layer_depth == nullptr ? sand.uniform : LocalMaterial{0.0f, layer_fraction[at], layer_depth[at]};
-    const float inverse = inverseDepth(load.h, sand);
-    const float flow = inverse * maximum(fabsf(load.hu), fabsf(load.hv));
-    return maximum(speed, flow + waveSpeed(diluteLayer(load.h, material), sand));
+    // How much room it has does not matter to its speed.
+    const Cell cell = step.cell(load.h, load.hu, load.hv, contact.top[at],
+                                std::numeric_limits<float>::infinity(), step.materialAt(at));
+    return maximum(speed, step.signalSpeed(cell));
   }
 };
 

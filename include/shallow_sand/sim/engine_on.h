@@ -76,11 +76,11 @@ class EngineOn : public Engine {
   float attempt(float dt) override {
     attempted_ = stepOf(dt);
     float speed = stepper_.attempt(attempted_, windows_, layer(next_));
-    for (const Window& window : windows_) {
-      speed = std::max(speed, executor_.maximumOverCells(
-                                  window, ContactSpeed{contact(), columns(), attempted_.in.layer_fraction,
-                                                       attempted_.in.layer_depth, sand_, grid_.columns}));
-    }
+    const ContactSpeed contact_speed{contacts_.empty() ? ContactFields{} : contact(),
+                                     contacts_.empty() ? SandColumns{} : columns(),
+                                     Step<true, false>{attempted_}};
+    for (const Window& window : windows_)
+      speed = std::max(speed, executor_.maximumOverCells(window, contact_speed));
     return speed;
   }
 
@@ -241,7 +241,7 @@ class EngineOn : public Engine {
     stepper_.touch(bins.window);
     for (int hop = 0; hop < hops; ++hop) {
       displace(bins, hop == 0);
-      const SandWithoutRoom rest{contact(), columns(), grid_.columns, grid_.spacing};
+      const SandWithoutRoom rest{contact(), columns(), grid_.columns};
       if (hop + 1 < hops && executor_.partsWith(bins.window, rest).empty()) return;
     }
   }
