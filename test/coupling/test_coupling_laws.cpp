@@ -111,36 +111,29 @@ TEST(CouplingLaws, HoveringBodyLeavesMovingSandAlone) {
   }
 }
 
-/// Speed under which sand beside a body counts as settled [m/s]: a few cells on and beside a
-/// body may go on for ever, at some millimetres a second (see the limits in the README).
-constexpr double kCrawl = 0.02;
+/// What changed from one moment to another, in all columns and in the one that changed most.
+struct Change {
+  double part_of_all;  ///< sum of changes over the sum of depths
+  double most;         ///< [m]
+};
 
-double largestChange(const std::vector<float>& before, const std::vector<float>& after) {
-  double largest = 0.0;
-  for (std::size_t k = 0; k < before.size(); ++k) {
-    largest = std::max(largest, std::abs(static_cast<double>(after[k]) - before[k]));
+Change changeBetween(const Fields& before, const Fields& after) {
+  double sum = 0.0;
+  double depths = 0.0;
+  double most = 0.0;
+  for (std::size_t k = 0; k < before.depth.size(); ++k) {
+    const double change = std::abs(static_cast<double>(after.depth[k]) - before.depth[k]) +
+                          std::abs(static_cast<double>(after.load[k]) - before.load[k]);
+    sum += change;
+    depths += after.depth[k] + after.load[k];
+    most = std::max(most, change);
   }
-  return largest;
+  return {sum / depths, most};
 }
 
-/// Largest speed of sand that is deeper than a tenth of a cell: thinner sand on a body's steep sides runs off
-/// for ever, more and more slowly, as it does on rock. [m/s]
-double speedOfThickSand(const Simulator& simulator) {
-  const Fields fields = simulator.fields();
-  const float film = 0.1f * simulator.grid().spacing;
-  double fastest = 0.0;
-  const auto look = [&](const std::vector<float>& depth, const std::vector<float>& momentum_x,
-                        const std::vector<float>& momentum_y) {
-    for (std::size_t k = 0; k < depth.size(); ++k) {
-      if (depth[k] < film) continue;
-      fastest = std::max(fastest, static_cast<double>(std::hypot(momentum_x[k], momentum_y[k]) / depth[k]));
-    }
-  };
-  look(fields.depth, fields.momentum_x, fields.momentum_y);
-  look(fields.load, fields.load_momentum_x, fields.load_momentum_y);
-  return fastest;
-}
-
+/// Films on a body's steep sides trickle on, more and more slowly, as they do on rock. A second in which
+/// something moved once moved 1e-6 of the sand and 0.011 cells of a column at most, in 480 scenes; in the
+/// first seconds it is a thousand times as much.
 TEST(CouplingLaws, SandSettlesAroundARestingBodyAndStays) {
   std::mt19937 random = seededGenerator();
   for (int scene = 0; scene < kScenes; ++scene) {
@@ -149,23 +142,12 @@ TEST(CouplingLaws, SandSettlesAroundARestingBodyAndStays) {
     RandomBody body = randomBody(random, sand.parameters.grid.spacing);
     rest(random, sand, body);
     addTo(simulator, body);
-    const double latest = 20.0;
-    Fields settled = simulator.fields();
-    bool settles = false;
-    while (!settles && simulator.time() < latest) {
-      simulator.advance(0.2);
-      const Fields now = simulator.fields();
-      // Single cells beside a body may keep crawling: see the limits in the README.
-      settles = speedOfThickSand(simulator) < kCrawl && largestChange(settled.depth, now.depth) < kCrawl;
-      settled = now;
-    }
-    EXPECT_TRUE(settles) << "scene " << scene << ": " << simulator.activeCells()
-                         << " cells move, the fastest at " << speedOfThickSand(simulator) << " m/s";
-    if (!settles) continue;
+    simulator.advance(20.0);
+    const Fields settled = simulator.fields();
     simulator.advance(1.0);
-    EXPECT_LT(speedOfThickSand(simulator), kCrawl) << "scene " << scene;
-    // Roundings of a depth of some metres are a few times 1e-7 m.
-    EXPECT_LT(largestChange(settled.depth, simulator.fields().depth), kCrawl + 1e-6) << "scene " << scene;
+    const Change change = changeBetween(settled, simulator.fields());
+    EXPECT_LT(change.part_of_all, 1e-5) << "scene " << scene;
+    EXPECT_LT(change.most, 0.05 * sand.parameters.grid.spacing) << "scene " << scene;
   }
 }
 
