@@ -129,6 +129,7 @@ class Simulator::Implementation {
     // Where and when sand made way for it the last time; the time is infinite if it never did.
     Eigen::Isometry3d cleared_at = Eigen::Isometry3d::Identity();
     double cleared_time = std::numeric_limits<double>::infinity();
+    bool rests = false;  // it stood there when sand made way the time before, too
   };
 
   Implementation(const SimulatorParameters& parameters, std::vector<float> bed, std::vector<float> depth,
@@ -347,7 +348,9 @@ class Simulator::Implementation {
     progress_.last_step = step;
     progress_.steps += 1;
     steps_since_cleared_ += 1;
-    if (time_ >= end || !parameters_.displacement || bodiesHaveMoved()) clearBodies();
+    if (time_ >= end || !parameters_.displacement || steps_since_cleared_ >= kMostStepsUncleared ||
+        bodiesHaveMoved())
+      clearBodies();
   }
 
   /// Whether some body has moved so far that sand has to make way. Rays are dear, and a body crosses a column
@@ -374,7 +377,9 @@ class Simulator::Implementation {
     steps_since_cleared_ = 0;
     for (Body& body : bodies_) {
       if (body.motion.empty()) continue;
-      body.cleared_at = body.motion.poseAt(time_);
+      const Eigen::Isometry3d pose = body.motion.poseAt(time_);
+      body.rests = standsStill(body, pose);
+      body.cleared_at = pose;
       body.cleared_time = time_;
     }
   }
@@ -413,6 +418,10 @@ class Simulator::Implementation {
     return placed;
   }
 
+  static bool standsStill(const Body& body, const Eigen::Isometry3d& pose) {
+    return std::isfinite(body.cleared_time) && pose.matrix() == body.cleared_at.matrix();
+  }
+
   /// With which a body came from where sand made way for it the last time.
   Twist cameWith(const Body& body, const Eigen::Isometry3d& pose) const {
     if (std::isinf(body.cleared_time)) return body.motion.twistAt(time_);
@@ -427,10 +436,12 @@ class Simulator::Implementation {
     const DistanceField& field = *body.field;
     Eigen::Isometry3d pose = body.motion.poseAt(time_);
     const Twist twist = cameWith(body, pose);
+    const bool rests = body.rests && standsStill(body, pose);
     pose.pretranslate(-Eigen::Vector3d(grid_.origin_x, grid_.origin_y, 0.0));
 
     PlacedBody placed;
     placed.body = number;
+    placed.rests = rests;
     BodyView& view = placed.view;
     view.field = field.view(nullptr);
     const Eigen::Matrix3d to_body = pose.linear().transpose();
@@ -464,6 +475,7 @@ class Simulator::Implementation {
   /// at the step before, and is repeated in the rare case that speeds have grown by more.
   static constexpr double kHeadroom = 0.97;
   static constexpr double kLongestWayUncleared = 0.125;  // of a body between two castings of rays [cells]
+  static constexpr int kMostStepsUncleared = 4;  // in as many, waves travel a cell
 
   SimulatorParameters parameters_;
   Grid grid_;

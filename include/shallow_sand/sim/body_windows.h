@@ -12,6 +12,7 @@ struct PlacedBody {
   std::size_t body;
   BodyView view;
   Window window;  ///< columns it may touch
+  bool rests;     ///< neither moves nor moved when it was placed the last time, which was here
 };
 
 /// Rectangles that hold all the given ones, and do not overlap.

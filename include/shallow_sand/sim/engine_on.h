@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -66,11 +67,18 @@ class EngineOn : public Engine {
     // One more column on each side is free to take sand.
     for (const PlacedBody& body : bodies) touched.push_back(body.window.grown(1, grid_));
     const std::vector<Window> now = withoutOverlap(touched);
+    const std::vector<Window> moved = windowsOfMoved(bodies);
     // Cells that a body has left are looked at once more, to be cleared.
     touched.insert(touched.end(), windows_.begin(), windows_.end());
-    forEachBins(bodies, withoutOverlap(touched),
-                [&](const BodyBins& bins) { displacement_ ? makeWay(bins, hops) : drag(bins); });
+    forEachBins(bodies, withoutOverlap(touched), [&](const BodyBins& bins) {
+      const bool cast = std::any_of(moved.begin(), moved.end(), [&](const Window& window) {
+        return !window.overlap(bins.window).empty();
+      });
+      displacement_ ? makeWay(bins, hops, cast) : drag(bins);
+    });
     windows_ = now;
+    standing_.clear();
+    for (const PlacedBody& body : bodies) standing_[body.body] = body.window;
   }
 
   float attempt(float dt) override {
@@ -176,6 +184,7 @@ class EngineOn : public Engine {
     bed_ = uploaded(fields.bed);
     stepper_.touch(Window::all(grid_));
     windows_ = contacts.windows;
+    standing_.clear();
     std::vector<Cover> cover;
     for (const float value : contacts.cover) cover.push_back(static_cast<Cover>(static_cast<int>(value)));
     Fields layers = fields;
@@ -236,11 +245,27 @@ class EngineOn : public Engine {
     Memory<int> distance;
   };
 
+  /// Where bodies are, or were the last time, that do not rest.
+  std::vector<Window> windowsOfMoved(const std::vector<PlacedBody>& bodies) const {
+    std::vector<Window> moved;
+    std::map<std::size_t, Window> gone = standing_;
+    for (const PlacedBody& body : bodies) {
+      if (body.rests && gone.count(body.body) != 0) {
+        gone.erase(body.body);
+      } else {
+        moved.push_back(body.window);
+      }
+    }
+    for (const auto& was : gone) moved.push_back(was.second);
+    return moved;
+  }
+
   /// Sand goes on by a column in each of `hops`, unless all has gone before.
-  void makeWay(const BodyBins& bins, int hops) {
+  /// @param cast whether some body here has moved
+  void makeWay(const BodyBins& bins, int hops, bool cast) {
     stepper_.touch(bins.window);
     for (int hop = 0; hop < hops; ++hop) {
-      displace(bins, hop == 0);
+      displace(bins, cast && hop == 0);
       const SandWithoutRoom rest{contact(), columns(), grid_.columns};
       if (hop + 1 < hops && executor_.partsWith(bins.window, rest).empty()) return;
     }
@@ -479,6 +504,7 @@ class EngineOn : public Engine {
   GrowingMemory<BodyView> views_;
   GrowingMemory<int> bin_first_;
   GrowingMemory<int> bin_members_;
+  std::map<std::size_t, Window> standing_;  // columns of each body, when they were placed the last time
   std::vector<Window> windows_;  // columns that bodies may touch, at the last rays; they do not overlap
 };
 
