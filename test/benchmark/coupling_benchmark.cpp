@@ -18,10 +18,13 @@ constexpr double kStep = 0.001;  ///< short enough for the waves of a sloshing m
 constexpr double kFrame = 10.0 * kStep;
 constexpr double kSurface = 1.0;  ///< mean elevation of a sloshing map's surface [m]
 
-/// Sand in which every cell moves, in steps of one length.
-Map movingMap(int side) {
-  Map map = sloshingSand(side, 1);
+/// Sand without friction in which every cell moves, or sand that only the links move; every cell is computed.
+/// In steps of one length.
+Map computedMap(int side, bool moving) {
+  Map map = moving ? sloshingSand(side, 1) : restingSand(side, 1, Edge::wall);
+  if (!moving) map.depth.assign(map.depth.size(), static_cast<float>(kSurface));
   map.parameters.solver.fixed_step = kStep;
+  map.parameters.sleeping = moving;
   return map;
 }
 
@@ -70,7 +73,7 @@ class Links {
 
 /// `square`: side of the square that holds all links, of the map's. [%]
 void coupling(benchmark::State& state) {
-  const Map map = movingMap(static_cast<int>(state.range(0)));
+  const Map map = computedMap(static_cast<int>(state.range(0)), state.range(3) != 0);
   Simulator with = map.simulator();
   Simulator without = map.simulator();
   const double size = map.parameters.grid.size.x();
@@ -94,11 +97,10 @@ void coupling(benchmark::State& state) {
 
 void registerAll() {
   benchmark::RegisterBenchmark("coupling", coupling)
-      ->ArgNames({"side", "bodies", "square"})
-      ->Args({512, 50, 25})
-      ->Args({512, 50, 90})
-      ->Args({1024, 200, 90})
-      ->Args({64, 2, 50})
+      ->ArgNames({"side", "bodies", "square", "moving"})
+      ->ArgsProduct({{512}, {50}, {25, 90}, {0, 1}})
+      ->ArgsProduct({{1024}, {200}, {90}, {0, 1}})
+      ->Args({64, 2, 50, 1})
       ->UseManualTime()
       ->Unit(benchmark::kMillisecond);
 }

@@ -183,6 +183,15 @@ struct FlowLoads {
   }
 };
 
+/// 1 where a load may hang: FlowLoads does nothing but there, and beside it.
+struct HangingCover {
+  FlowLoads flow;
+
+  SHALLOW_SAND_HOST_DEVICE float operator()(int i, int j) const {
+    return flow.columns.cover[flow.step.index(i, j)] == Cover::hanging ? 1.0f : 0.0f;
+  }
+};
+
 /// Takes over what FlowLoads wrote.
 struct CopyLoads {
   FlowLoads flow;

@@ -15,10 +15,22 @@ struct PushedDepth {
   }
 };
 
+/// Empties a layer.
+struct NoSand {
+  SandLayer layer;
+  int across;
+
+  SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {
+    layer.set(static_cast<long long>(j) * across + i, {});
+  }
+};
+
 /// Sand that a body pushed out of one column stands on the next as a tower, for the body's side moves on by
 /// whole columns. Let fall, it would gain speed that sand before a real blade does not have, and run out far
 /// below the angle of repose. So pushed sand first goes down from column to column, as far as friction cannot
-/// hold it, with the momentum that it has. One pass; only sand that was just pushed moves.
+/// hold it, with the momentum that it has. One pass; only sand that was just pushed moves. A column that gives
+/// all of it away has given some to a neighbour: so what needs a pass is at most a cell from pushed sand, and
+/// `to` is 0 elsewhere if it was before.
 struct LowerPushedSand {
   SandColumns columns;
   const float* repose_rise;  ///< null where the material is the same everywhere

@@ -80,6 +80,13 @@ class CudaExecutor {
     checkCuda(cudaGetLastError(), "launch");
   }
 
+  /// Calls function(i, j) for every cell of the window: it may do nothing at those where value(i, j) is 0, and
+  /// beside which it is.
+  template <class Value, class Function>
+  void forEachCellBeside(const Window& window, const Value&, const Function& function) const {
+    forEachCell(window, function);
+  }
+
   template <class Function>
   float maximumOverCells(const Window& window, const Function& function) {
     if (window.empty()) return 0.0f;

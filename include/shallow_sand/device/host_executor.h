@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <type_traits>
@@ -65,6 +66,23 @@ class HostExecutor {
     for (int j = window.row_begin; j < window.row_end; ++j) {
 #pragma omp simd
       for (int i = window.column_begin; i < window.column_end; ++i) function(i, j);
+    }
+  }
+
+  /// Calls function(i, j) once for every cell of the window at which, or beside which within the window,
+  /// value(i, j) is above 0. Other backends may call it for others, too.
+  template <class Value, class Function>
+  void forEachCellBeside(const Window& window, const Value& value, const Function& function) const {
+#pragma omp parallel num_threads(threads_) if (isWorthThreads(window))
+    {
+      std::vector<std::uint8_t> near;
+#pragma omp for schedule(static)
+      for (int j = window.row_begin; j < window.row_end; ++j) {
+        findBeside(window, j, value, near);
+        for (int i = window.column_begin; i < window.column_end; ++i) {
+          if (near[static_cast<std::size_t>(i - window.column_begin) + 1] != 0) function(i, j);
+        }
+      }
     }
   }
 
@@ -137,6 +155,29 @@ class HostExecutor {
       }
     }
     return false;
+  }
+
+  /// Sets near[1 + k] to whether a value is above 0 at the k-th cell of row j, or beside it.
+  template <class Value>
+  static void findBeside(const Window& window, int j, const Value& value, std::vector<std::uint8_t>& near) {
+    const int count = window.columns();
+    near.assign(static_cast<std::size_t>(count) + 2, 0);
+    const bool south = j > window.row_begin;
+    const bool north = j + 1 < window.row_end;
+    for (int k = 0; k < count; ++k) {
+      const int i = window.column_begin + k;
+      const float across = maximum(value(i, south ? j - 1 : j), value(i, north ? j + 1 : j));
+      near[static_cast<std::size_t>(k) + 1] = maximum(across, value(i, j)) > 0.0f ? 1 : 0;
+    }
+    spread(window, j, value, near);
+  }
+  template <class Value>
+  static void spread(const Window& window, int j, const Value& value, std::vector<std::uint8_t>& near) {
+    for (int k = 0; k < window.columns(); ++k) {
+      if (!(value(window.column_begin + k, j) > 0.0f)) continue;
+      near[static_cast<std::size_t>(k)] = 1;
+      near[static_cast<std::size_t>(k) + 2] = 1;
+    }
   }
 
   /// To wake a thread takes as long as some hundred cells.

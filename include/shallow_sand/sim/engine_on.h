@@ -297,11 +297,13 @@ class EngineOn : public Engine {
     const float* repose_rise = repose_rise_.size() == 0 ? nullptr : repose_rise_.data();
     const LowerPushedSand there{columns(), repose_rise, sand_, pushed, spare, grid_.columns, window};
     const LowerPushedSand back{columns(), repose_rise, sand_, spare, pushed, grid_.columns, window};
+    executor_.forEachCell(window, NoSand{spare, grid_.columns});
+    const PushedDepth pushed_depth{pushed.depth, grid_.columns};
     for (int pass = 0; pass < kPassesOfPushedSand; pass += 2) {
-      executor_.forEachCell(window, there);
-      executor_.forEachCell(window, back);
+      executor_.forEachCellBeside(window, pushed_depth, there);
+      executor_.forEachCellBeside(window, PushedDepth{spare.depth, grid_.columns}, back);
     }
-    executor_.forEachCell(window, LayPushedSand{columns(), pushed, grid_.columns});
+    executor_.forEachCellBeside(window, pushed_depth, LayPushedSand{columns(), pushed, grid_.columns});
   }
 
   void drag(const BodyBins& bins) {
@@ -322,8 +324,8 @@ class EngineOn : public Engine {
                      layer(next_),
                      layer(contacts_.front().next_hidden)};
       stepper_.touch(window);
-      executor_.forEachCell(window, flow);
-      executor_.forEachCell(window, CopyLoads{flow});
+      executor_.forEachCellBeside(window, HangingCover{flow}, flow);
+      executor_.forEachCellBeside(window, HangingCover{flow}, CopyLoads{flow});
     }
   }
 
