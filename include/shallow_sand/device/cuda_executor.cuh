@@ -80,12 +80,13 @@ class CudaExecutor {
     checkCuda(cudaGetLastError(), "launch");
   }
 
-  /// Calls function(i, j) for every cell of the window: it may do nothing at those where value(i, j) is 0, and
-  /// beside which it is.
-  template <class Value, class Function>
-  void forEachCellBeside(const Window& window, const Value&, const Function& function) const {
-    forEachCell(window, function);
+  /// Cells that hold all of those that are asked for: functions look for themselves whether there is work.
+  using Cells = Window;
+  template <class Value>
+  Cells cellsWith(const Window& window, const Value&) const {
+    return window;
   }
+  Cells grown(const Cells& cells) const { return cells; }
 
   template <class Function>
   float maximumOverCells(const Window& window, const Function& function) {

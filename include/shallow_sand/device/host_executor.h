@@ -4,12 +4,12 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
-#include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <type_traits>
 #include <vector>
 
+#include "shallow_sand/device/cell_mask.h"
 #include "shallow_sand/device/helping_threads.h"
 #include "shallow_sand/device/window.h"
 #include "shallow_sand/device/worth_of_help.h"
@@ -69,21 +69,40 @@ class HostExecutor {
     }
   }
 
-  /// Calls function(i, j) once for every cell of the window at which, or beside which within the window,
-  /// value(i, j) is above 0. Other backends may call it for others, too.
-  template <class Value, class Function>
-  void forEachCellBeside(const Window& window, const Value& value, const Function& function) const {
-#pragma omp parallel num_threads(threads_) if (isWorthThreads(window))
-    {
-      std::vector<std::uint8_t> near;
-#pragma omp for schedule(static)
-      for (int j = window.row_begin; j < window.row_end; ++j) {
-        findBeside(window, j, value, near);
-        for (int i = window.column_begin; i < window.column_end; ++i) {
-          if (near[static_cast<std::size_t>(i - window.column_begin) + 1] != 0) function(i, j);
-        }
+  /// Cells of which only some need work.
+  using Cells = CellMask;
+
+  /// Cells for which value(i, j) is above 0.
+  template <class Value>
+  Cells cellsWith(const Window& window, const Value& value) const {
+    Cells cells(window);
+#pragma omp parallel for num_threads(threads_) schedule(static) if (isWorthThreads(window))
+    for (int j = window.row_begin; j < window.row_end; ++j) {
+      for (int i = window.column_begin; i < window.column_end; ++i) {
+        if (value(i, j) > 0.0f) cells.set(i, j);
       }
     }
+    return cells;
+  }
+
+  /// Those of some cells for which it is.
+  template <class Value>
+  Cells cellsWith(const Cells& some, const Value& value) const {
+    Cells cells(some.window());
+    forEachCell(some, [&](int i, int j) {
+      if (value(i, j) > 0.0f) cells.set(i, j);
+    });
+    return cells;
+  }
+
+  Cells grown(const Cells& cells) const { return cells.grown(); }
+
+  /// Calls function(i, j) once for each of the cells.
+  template <class Function>
+  void forEachCell(const Cells& cells, const Function& function) const {
+    const Window& window = cells.window();
+#pragma omp parallel for num_threads(threads_) schedule(static) if (isWorthThreads(window))
+    for (int j = window.row_begin; j < window.row_end; ++j) cells.forEachInRow(j, function);
   }
 
   /// Largest function(i, j) over the window, at least 0.
@@ -155,29 +174,6 @@ class HostExecutor {
       }
     }
     return false;
-  }
-
-  /// Sets near[1 + k] to whether a value is above 0 at the k-th cell of row j, or beside it.
-  template <class Value>
-  static void findBeside(const Window& window, int j, const Value& value, std::vector<std::uint8_t>& near) {
-    const int count = window.columns();
-    near.assign(static_cast<std::size_t>(count) + 2, 0);
-    const bool south = j > window.row_begin;
-    const bool north = j + 1 < window.row_end;
-    for (int k = 0; k < count; ++k) {
-      const int i = window.column_begin + k;
-      const float across = maximum(value(i, south ? j - 1 : j), value(i, north ? j + 1 : j));
-      near[static_cast<std::size_t>(k) + 1] = maximum(across, value(i, j)) > 0.0f ? 1 : 0;
-    }
-    spread(window, j, value, near);
-  }
-  template <class Value>
-  static void spread(const Window& window, int j, const Value& value, std::vector<std::uint8_t>& near) {
-    for (int k = 0; k < window.columns(); ++k) {
-      if (!(value(window.column_begin + k, j) > 0.0f)) continue;
-      near[static_cast<std::size_t>(k)] = 1;
-      near[static_cast<std::size_t>(k) + 2] = 1;
-    }
   }
 
   /// To wake a thread takes as long as some hundred cells.

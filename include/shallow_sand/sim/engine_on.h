@@ -293,17 +293,22 @@ class EngineOn : public Engine {
   /// `pushed` is 0 around what can come into the window, and everywhere in it afterwards.
   void layPushedSand(const Window& window, const SandLayer& pushed) {
     stepper_.touch(window);
-    const SandLayer spare = layer(next_);
     const float* repose_rise = repose_rise_.size() == 0 ? nullptr : repose_rise_.data();
-    const LowerPushedSand there{columns(), repose_rise, sand_, pushed, spare, grid_.columns, window};
-    const LowerPushedSand back{columns(), repose_rise, sand_, spare, pushed, grid_.columns, window};
-    executor_.forEachCell(window, NoSand{spare, grid_.columns});
-    const PushedDepth pushed_depth{pushed.depth, grid_.columns};
-    for (int pass = 0; pass < kPassesOfPushedSand; pass += 2) {
-      executor_.forEachCellBeside(window, pushed_depth, there);
-      executor_.forEachCellBeside(window, PushedDepth{spare.depth, grid_.columns}, back);
+    SandLayer from = pushed;
+    SandLayer to = layer(next_);
+    executor_.forEachCell(window, NoSand{to, grid_.columns});
+    auto holding = executor_.cellsWith(window, PushedDepth{from.depth, grid_.columns});
+    for (int pass = 0; pass < kPassesOfPushedSand; ++pass) {
+      const PushedSand sand{
+          columns(),     repose_rise, sand_, from, contacts_.front().next_hidden.depth.data(),
+          grid_.columns, window};
+      const auto near = executor_.grown(holding);
+      executor_.forEachCell(holding, DividePushedSand{sand});
+      executor_.forEachCell(near, LowerPushedSand{sand, to});
+      holding = executor_.cellsWith(near, PushedDepth{to.depth, grid_.columns});
+      std::swap(from, to);
     }
-    executor_.forEachCellBeside(window, pushed_depth, LayPushedSand{columns(), pushed, grid_.columns});
+    executor_.forEachCell(holding, LayPushedSand{columns(), pushed, grid_.columns});
   }
 
   void drag(const BodyBins& bins) {
@@ -324,8 +329,9 @@ class EngineOn : public Engine {
                      layer(next_),
                      layer(contacts_.front().next_hidden)};
       stepper_.touch(window);
-      executor_.forEachCellBeside(window, HangingCover{flow}, flow);
-      executor_.forEachCellBeside(window, HangingCover{flow}, CopyLoads{flow});
+      const auto near = executor_.grown(executor_.cellsWith(window, HangingCover{flow}));
+      executor_.forEachCell(near, flow);
+      executor_.forEachCell(near, CopyLoads{flow});
     }
   }
 
