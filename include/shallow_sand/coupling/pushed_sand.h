@@ -44,11 +44,11 @@ struct PushedSand {
   SHALLOW_SAND_HOST_DEVICE float surface(long long at) const {
     return columns.visible_bed[at] + (columns.visible.depth[at] + from.depth[at]);
   }
-  /// By how much a neighbour's surface is lower than friction holds. [m]
+  /// By how much a neighbour's surface is lower than friction holds; under a body there is no place. [m]
   SHALLOW_SAND_HOST_DEVICE float drop(long long at, int i, int j, float level_rise) const {
     if (!window.holds(i, j)) return 0.0f;
     const long long there = index(i, j);
-    if (columns.cover[there] == Cover::hanging) return 0.0f;
+    if (columns.ceiling[there] < 1e30f) return 0.0f;
     const float held = repose_rise == nullptr ? sand.uniform.repose_rise : repose_rise[at];
     return maximum((surface(at) - surface(there)) + level_rise - held, 0.0f);
   }
