@@ -15,8 +15,7 @@ constexpr double kWidth = 1.2;
 constexpr double kHeight = 0.8;  ///< higher than any berm
 constexpr double kTravel = 1.0;
 constexpr double kFrictionAngle = 32.0;
-constexpr double kTolerance = 3.0;  ///< of a berm [degrees]
-const Eigen::Vector2d kSize{3.2, 2.4};
+constexpr double kTolerance = 3.0;       ///< of a berm [degrees]
 const Eigen::Vector2d kStart{0.9, 1.2};  ///< of the blade's middle
 
 struct Blade {
@@ -33,16 +32,34 @@ double thicknessOf(const Blade& blade) { return blade.cells * kSpacing; }
 double submerged(const Blade& blade) { return thicknessOf(blade) * kWidth * kCut; }
 double duration(const Blade& blade) { return kTravel / blade.speed; }
 
+/// Sand keeps its momentum where a blade stops at once, and its berm runs out flat. A robot's blade slows
+/// down.
+double slowingDuration(const Blade& blade) { return blade.speed > 0.5 ? 3.0 : 2.0; }
+double slowingWay(const Blade& blade) { return 0.5 * blade.speed * slowingDuration(blade); }
+
+/// At an even speed, then slower and slower up to a stop.
+std::vector<PoseKey> motionOf(const Blade& blade, const Eigen::Vector3d& from) {
+  const Eigen::Quaterniond heading = turned(blade.yaw * kDegree, Eigen::Vector3d::UnitZ());
+  const auto at = [&](double x) -> Eigen::Vector3d { return from + Eigen::Vector3d(x, 0.0, 0.0); };
+  std::vector<PoseKey> motion = straightMotion(at(0.0), at(kTravel), blade.speed, 0.0, heading);
+  constexpr int kKeys = 20;
+  for (int key = 1; key <= kKeys; ++key) {
+    const double share = static_cast<double>(key) / kKeys;
+    motion.push_back(poseKey(duration(blade) + share * slowingDuration(blade),
+                             at(kTravel + slowingWay(blade) * share * (2.0 - share)), heading));
+  }
+  return motion;
+}
+
 /// Sand in which the blade already stands, so that it only has to move.
 Scene sceneOf(const Blade& blade) {
-  Scene scene = levelSand(kSize, kSpacing, kSurface);
+  Scene scene = levelSand({blade.speed > 0.5 ? 4.6 : 3.3, 2.4}, kSpacing, kSurface);
   const double height = kSurface - kCut + 0.5 * kHeight;
   const Eigen::Vector3d from(kStart.x(), kStart.y(), height);
   SceneBody body;
   body.name = "blade";
   body.shape = Box{{thicknessOf(blade), kWidth, kHeight}};
-  body.motion = straightMotion(from, from + Eigen::Vector3d(kTravel, 0.0, 0.0), blade.speed, 0.0,
-                               turned(blade.yaw * kDegree, Eigen::Vector3d::UnitZ()));
+  body.motion = motionOf(blade, from);
   carve(scene, body, kSurface - kCut, {thicknessOf(blade), kWidth});
   scene.bodies = {body};
   return scene;
@@ -58,12 +75,12 @@ Eigen::Vector2d fromBlade(const Blade& blade, const Eigen::Vector2d& place, doub
 }
 
 /// Behind the blade's last place, on its way, and out of reach of the walls of its trench.
-bool onTrenchFloor(const Blade& blade, const Eigen::Vector2d& place) {
+bool onTrenchFloor(const Blade& blade, const Eigen::Vector2d& place, double travelled) {
   const double yaw = blade.yaw * kDegree;
   const double half = 0.5 * (kWidth * std::cos(yaw) + thicknessOf(blade) * std::sin(yaw));
   const double rear = -0.5 * thicknessOf(blade);
   return std::abs(place.y() - kStart.y()) < half - slump() &&
-         fromBlade(blade, place, 0.0).x() > rear + slump() && fromBlade(blade, place, kTravel).x() < rear;
+         fromBlade(blade, place, 0.0).x() > rear + slump() && fromBlade(blade, place, travelled).x() < rear;
 }
 
 struct Range {
@@ -77,11 +94,11 @@ struct Range {
   }
 };
 
-Range trenchDepth(const Blade& blade, const Grid& grid, const Fields& fields) {
+Range trenchDepth(const Blade& blade, const Grid& grid, const Fields& fields, double travelled) {
   Range trench;
   for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i) {
-      if (onTrenchFloor(blade, {grid.x(i), grid.y(j)}))
+      if (onTrenchFloor(blade, {grid.x(i), grid.y(j)}, travelled))
         trench.add(kSurface - visibleSurface(fields, grid.index(i, j)));
     }
   }
@@ -125,7 +142,7 @@ struct PushedBerm {
   double most_overlap = 0.0;
 };
 
-/// Runs until the blade has come to its last place.
+/// Runs until the blade begins to slow down.
 PushedBerm push(Simulator& simulator, const Blade& blade) {
   PushedBerm berm;
   constexpr int kLooks = 10;
@@ -150,12 +167,12 @@ TEST_P(Blades, CutATrenchAndPushABerm) {
   const PushedBerm pushed_berm = push(simulator, blade);
   const Grid& grid = simulator.grid();
   const Fields pushed = simulator.fields();
-  const Range trench = trenchDepth(blade, grid, pushed);
-  const bool settles = settle(simulator, 4.0);
+  const Range trench = trenchDepth(blade, grid, pushed, kTravel);
+  const bool settles = settle(simulator, slowingDuration(blade) + 3.0);
   const Fields rest = simulator.fields();
-  const Range trench_rest = trenchDepth(blade, grid, rest);
+  const Range trench_rest = trenchDepth(blade, grid, rest, kTravel);
   const double overlap_rest = simulator.bodyOverlap();
-  const double berm_rest = bermAngle(blade, grid, rest, kTravel);
+  const double berm_rest = bermAngle(blade, grid, rest, kTravel + slowingWay(blade));
   const double behind = changeBehind(blade, scene, grid, rest);
 
   EXPECT_GT(trench.count, 100);
@@ -172,9 +189,9 @@ TEST_P(Blades, CutATrenchAndPushABerm) {
   if (blade.speed > 0.1 && blade.speed < 0.5) {
     EXPECT_NEAR(pushed_berm.mean, kFrictionAngle, kTolerance);
   }
-  // Once it rests no slope is steeper than friction holds. How far it runs out is a limit of the model, told
-  // in the README.
+  // An avalanche keeps moving while the slope is already a little flatter than the one at which it began.
   EXPECT_LT(berm_rest, kFrictionAngle + 0.5);
+  EXPECT_GT(berm_rest, kFrictionAngle - kOvershoot);
 
   std::printf("%4.2f m/s %2.0f deg %2d cells: trench %.4f..%.4f (rest %.4f..%.4f, %d columns), ", blade.speed,
               blade.yaw, blade.cells, trench.least, trench.most, trench_rest.least, trench_rest.most,
@@ -186,15 +203,17 @@ TEST_P(Blades, CutATrenchAndPushABerm) {
               simulator.ledger().error());
 }
 
-/// The step in which the blade comes to rest ends after that: its velocity is then zero, but sand that it met
+/// The step in which a blade comes to rest ends after that: its velocity is then zero, but sand that it met
 /// in this step must go ahead all the same.
 TEST(StoppingBlade, LeavesNothingBehindWhenItStopsWithinAStep) {
   const Blade blade{1.0, 30.0, 1};
+  Scene scene = sceneOf(blade);
+  scene.bodies.front().motion.resize(2);  // it stops at once
   for (const double before : {0.0005, 0.0015, 0.0025}) {
-    Simulator simulator = buildSimulator(sceneOf(blade));
+    Simulator simulator = buildSimulator(scene);
     simulator.advanceTo(duration(blade) - before);
     simulator.advanceTo(duration(blade) + 0.001);
-    const Range trench = trenchDepth(blade, simulator.grid(), simulator.fields());
+    const Range trench = trenchDepth(blade, simulator.grid(), simulator.fields(), kTravel);
     std::printf("stops %.1f ms after a step began: trench %.4f..%.4f m\n", 1e3 * before, trench.least,
                 trench.most);
     EXPECT_GT(trench.least, 0.98 * kCut);
