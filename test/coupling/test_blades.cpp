@@ -15,7 +15,8 @@ constexpr double kWidth = 1.2;
 constexpr double kHeight = 0.8;  ///< higher than any berm
 constexpr double kTravel = 1.0;
 constexpr double kFrictionAngle = 32.0;
-constexpr double kTolerance = 3.0;       ///< of a berm [degrees]
+constexpr double kTolerance = 3.0;  ///< of a berm [degrees]
+constexpr double kOvershoot = 6.0;  ///< by which avalanches stop below the friction angle, at most [degrees]
 const Eigen::Vector2d kStart{0.9, 1.2};  ///< of the blade's middle
 
 struct Blade {
