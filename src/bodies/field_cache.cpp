@@ -21,7 +21,6 @@ namespace fs = std::filesystem;
 
 /// Of the file's layout and of how fields are computed: raise it when one of them changes.
 constexpr std::uint32_t kVersion = 4;
-constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30;
 const char kEnding[] = ".field";
 constexpr std::size_t kNameLength = 36;  ///< of a UUID as text
 
@@ -116,7 +115,7 @@ fs::path FieldCache::fileOf(const std::string& key) const { return folder_ / (ke
 std::optional<SampledMesh> FieldCache::load(const std::string& key) const {
   const fs::path path = fileOf(key);
   std::error_code error;
-  if (!fs::is_regular_file(path, error) || fs::file_size(path, error) > kMostBytes) return std::nullopt;
+  if (!fs::is_regular_file(path, error) || fs::file_size(path, error) > most_bytes_) return std::nullopt;
   std::ifstream file(path, std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   std::optional<SampledMesh> sampled = readBack(std::move(bytes), key);
@@ -145,11 +144,11 @@ std::string FieldCache::store(const std::string& key, const SampledMesh& sampled
     fs::remove(part, ignored);
     return folder_.string() + " cannot be written";
   }
-  makeRoom();
+  makeRoom(fileOf(key));
   return "";
 }
 
-void FieldCache::makeRoom() const {
+void FieldCache::makeRoom(const fs::path& kept) const {
   struct File {
     fs::file_time_type time;
     std::uintmax_t size;
@@ -164,12 +163,13 @@ void FieldCache::makeRoom() const {
     std::error_code gone;
     const File file{entry->last_write_time(gone), entry->file_size(gone), entry->path()};
     if (gone) continue;
-    files.push_back(file);
     total += file.size;
+    // Its time may be older than that of others: clocks tick, differ between machines and are put back.
+    if (file.path != kept) files.push_back(file);
   }
   std::sort(files.begin(), files.end(), [](const File& a, const File& b) { return a.time < b.time; });
   for (const File& file : files) {
-    if (total <= kMostBytes) return;
+    if (total <= most_bytes_) return;
     if (fs::remove(file.path, error)) total -= file.size;
   }
 }

@@ -60,13 +60,13 @@ __attribute__((target("avx2"), flatten)) void runAvx2(const Work& work) {
 }
 #endif
 
-/// Runs loops on wider registers where the processor has them; the same bits either way.
+/// Runs loops on the registers of `instructions`; the same bits either way.
 template <typename Work>
-void runWide(const Work& work) {
+void runOn(InstructionSet instructions, const Work& work) {
 #ifdef __x86_64__
-  static const bool has_avx2 = __builtin_cpu_supports("avx2") != 0;
-  if (has_avx2) return runAvx2(work);
+  if (instructions != InstructionSet::baseline) return runAvx2(work);
 #endif
+  (void)instructions;
   work();
 }
 
@@ -74,7 +74,7 @@ void runWide(const Work& work) {
 template <int count>
 class Views {
  public:
-  explicit Views(const Eigen::Vector3d* points) {
+  Views(const Eigen::Vector3d* points, InstructionSet instructions) : instructions_(instructions) {
     Eigen::AlignedBox3d box;
     for (int i = 0; i < count; ++i) {
       x_[i] = points[i].x();
@@ -93,11 +93,11 @@ class Views {
   }
 
   void addTriangle(const Corners& triangle) {
-    runWide([&] { multiplyBy(triangle); });
+    runOn(instructions_, [&] { multiplyBy(triangle); });
     if (++factors_ % kFactors == 0) shrink();
   }
   void addSeries(const Moments& moments) {
-    runWide([&] { addToFar(moments); });
+    runOn(instructions_, [&] { addToFar(moments); });
   }
 
   double windingNumber(int i) const {
@@ -159,6 +159,7 @@ class Views {
   double real_[count], imaginary_[count] = {}, turns_[count] = {};
   double far_[count] = {};
   int factors_ = 0;
+  InstructionSet instructions_;
   Eigen::Vector3d middle_;
   double radius_;  ///< no point is farther from the middle [m]
 };
@@ -437,7 +438,8 @@ double TriangleSurface::Tree::openEdgesSeen(int node, const Eigen::Vector3d& mid
   return openEdgesSeen(leftOf(node), middle, radius) + openEdgesSeen(rightOf(node), middle, radius);
 }
 
-TriangleSurface::TriangleSurface(const TriangleMesh& mesh) : tree_(std::make_unique<const Tree>(mesh)) {}
+TriangleSurface::TriangleSurface(const TriangleMesh& mesh, InstructionSet instructions)
+    : tree_(std::make_unique<const Tree>(mesh)), instructions_(instructions) {}
 TriangleSurface::~TriangleSurface() = default;
 
 TriangleSurface::Nearest TriangleSurface::nearest(const Eigen::Vector3d& point, double bound) const {
@@ -457,7 +459,7 @@ const Eigen::Vector3d& TriangleSurface::normal(int triangle) const {
 }
 
 double TriangleSurface::windingNumber(const Eigen::Vector3d& point) const {
-  Views<1> view(&point);
+  Views<1> view(&point, instructions_);
   tree_->look(0, view);
   return view.windingNumber(0);
 }
@@ -467,7 +469,7 @@ std::vector<double> TriangleSurface::windingNumbers(std::vector<Eigen::Vector3d>
   points.resize((asked + kTogether - 1) / kTogether * kTogether, points.back());
   std::vector<double> numbers;
   for (std::size_t first = 0; first < points.size(); first += kTogether) {
-    Views<kTogether> views(&points[first]);
+    Views<kTogether> views(&points[first], instructions_);
     tree_->look(0, views);
     for (int i = 0; i < kTogether; ++i) numbers.push_back(views.windingNumber(i));
   }

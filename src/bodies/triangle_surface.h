@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "shallow_sand/bodies/shape.h"
+#include "shallow_sand/device/instruction_set.h"
 
 namespace shallow_sand {
 
@@ -16,8 +17,9 @@ constexpr double kWindingError = 0.1;
 /// a point and what a ray meets. Triangles without area are left out.
 class TriangleSurface {
  public:
+  /// @param instructions one of instructionSets(); winding numbers are computed with up to AVX2 of it
   /// @throws InvalidParameter with key `mesh` for a mesh without area
-  explicit TriangleSurface(const TriangleMesh& mesh);
+  explicit TriangleSurface(const TriangleMesh& mesh, InstructionSet instructions = instructionSets().back());
   ~TriangleSurface();
 
   struct Nearest {
@@ -56,6 +58,7 @@ class TriangleSurface {
  private:
   struct Tree;
   std::unique_ptr<const Tree> tree_;
+  InstructionSet instructions_;
 };
 
 }  // namespace shallow_sand

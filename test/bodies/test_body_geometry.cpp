@@ -1,17 +1,16 @@
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "random_seed.h"
 #include "shallow_sand/bodies/body_geometry.h"
 #include "shallow_sand/core/parameters.h"
+#include "temporary_folder.h"
 
 namespace shallow_sand {
 namespace {
@@ -23,22 +22,6 @@ constexpr double kCell = 0.05;
 double between(std::mt19937& generator, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(generator);
 }
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string path = "/tmp/shallow_sand_XXXXXX";
-    if (mkdtemp(&path[0]) == nullptr) throw std::runtime_error("no temporary folder at " + path);
-    path_ = path;
-  }
-  ~TemporaryFolder() { fs::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 float at(const DistanceField& field, double x, double y, double z) {
   return field.view(field.distance.data())

@@ -1,14 +1,24 @@
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/convex.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/distance.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "random_seed.h"
+#include "shallow_sand/bodies/body_geometry.h"
 #include "shallow_sand/bodies/distance_field.h"
 #include "shallow_sand/core/parameters.h"
 
@@ -156,6 +166,163 @@ TEST(DistanceField, cylinderKeepsThePromise) {
       field, [&](const Eigen::Vector3d& point) { return cylinderDistance(cylinder, point); },
       0.001 * cylinder.radius);
 }
+
+/// What stands for a point where FCL takes none: a triangle or a sphere no part of which is farther from it.
+constexpr double kPointRadius = 1e-9;
+
+/// Distances to a mesh as FCL finds them from triangle to triangle: in closed form, with other code than its
+/// Project, from which fields are computed. Not those of a sphere: they share that code, and are left unset
+/// where it touches the mesh.
+class FclMesh {
+ public:
+  explicit FclMesh(const TriangleMesh& mesh) {
+    mesh_.beginModel(static_cast<int>(mesh.triangles.size()));
+    for (const auto& triangle : mesh.triangles) {
+      const auto [a, b, c] = corners(mesh, triangle);
+      mesh_.addTriangle(a, b, c);
+    }
+    mesh_.endModel();
+    point_.beginModel(1);
+    // No side is parallel to one of a mesh: FCL then takes the first pair of sides for the nearest one.
+    point_.addTriangle(kPointRadius * Eigen::Vector3d(0.1, 0.5, 0.8),
+                       kPointRadius * Eigen::Vector3d(-0.7, 0.2, -0.6),
+                       kPointRadius * Eigen::Vector3d(0.6, -0.7, -0.2));
+    point_.endModel();
+  }
+
+  /// Wrong by kPointRadius at most.
+  double distance(const Eigen::Vector3d& point) const {
+    const fcl::DistanceRequestd request;
+    fcl::DistanceResultd result;
+    return fcl::distance(&mesh_, fcl::Transform3d::Identity(), &point_,
+                         fcl::Transform3d(Eigen::Translation3d(point)), request, result);
+  }
+
+ private:
+  fcl::BVHModel<fcl::OBBRSSd> mesh_;
+  fcl::BVHModel<fcl::OBBRSSd> point_;
+};
+
+/// A closed mesh that overlaps itself nowhere, and what is inside of it.
+struct Solid {
+  TriangleMesh mesh;
+  std::function<bool(const Eigen::Vector3d&)> contains;
+  double off;  ///< how far the surface of what `contains` tells about may lie from the mesh [m]
+};
+
+/// As FCL tells for a shape of its own; round ones are triangulated within 0.1 % of their radius.
+template <typename FclShape>
+Solid solidOf(const TriangleMesh& mesh, const FclShape& shape, double off) {
+  const auto contains = [shape](const Eigen::Vector3d& point) {
+    const fcl::Sphered probe(kPointRadius);
+    fcl::CollisionResultd result;
+    return fcl::collide(&shape, fcl::Transform3d::Identity(), &probe,
+                        fcl::Transform3d(Eigen::Translation3d(point)), fcl::CollisionRequestd(), result) > 0;
+  };
+  return {mesh, contains, off};
+}
+
+/// The hull of points on a sphere.
+TriangleMesh randomHull(std::mt19937& generator, int count) {
+  TriangleMesh loose;
+  for (int i = 0; i < count; ++i) {
+    loose.vertices.push_back(0.3 * randomPose(generator).linear().col(0));
+    loose.triangles.push_back({i, i, i});
+  }
+  return enclosingMesh(loose, LinkShape::convex_hull);
+}
+
+Solid randomConvexSolid(std::mt19937& generator) {
+  const TriangleMesh hull = randomHull(generator, 30);
+  auto faces = std::make_shared<std::vector<int>>();
+  for (const auto& triangle : hull.triangles) {
+    faces->push_back(3);
+    faces->insert(faces->end(), triangle.begin(), triangle.end());
+  }
+  const fcl::Convexd convex(std::make_shared<std::vector<Eigen::Vector3d>>(hull.vertices),
+                            static_cast<int>(hull.triangles.size()), faces);
+  // FCL's iterations end within 1e-6.
+  return solidOf(hull, convex, 1e-5);
+}
+
+/// A star with dents and spikes, of which FCL knows no shape.
+Solid randomStar(std::mt19937& generator) {
+  TriangleMesh star = randomHull(generator, 40);
+  for (Eigen::Vector3d& vertex : star.vertices) vertex *= between(generator, 0.3, 1.0);
+  return {star, [star](const Eigen::Vector3d& point) { return windingNumber(star, point) > 0.5; }, 0.0};
+}
+
+Solid randomSolid(std::mt19937& generator, int kind) {
+  const double radius = between(generator, 0.1, 0.3);
+  const double length = between(generator, 0.2, 0.5);
+  const Eigen::Vector3d size = randomVector(generator, 0.2, 0.5);
+  switch (kind) {
+    case 0:
+      return solidOf(triangulate(Box{size}), fcl::Boxd(size), 0.0);
+    case 1:
+      return solidOf(triangulate(Cylinder{radius, length}), fcl::Cylinderd(radius, length), 0.001 * radius);
+    case 2:
+      return solidOf(triangulate(Sphere{radius}), fcl::Sphered(radius), 0.001 * radius);
+    case 3:
+      return randomConvexSolid(generator);
+    default:
+      return randomStar(generator);
+  }
+}
+
+/// Turned, stretched along axes that are none of its own, and moved.
+Solid distorted(std::mt19937& generator, const Solid& solid) {
+  const Eigen::Vector3d stretch = randomVector(generator, 0.5, 1.5);
+  const Eigen::Affine3d there =
+      randomPose(generator) * Eigen::Scaling(stretch) * Eigen::Affine3d(randomPose(generator).linear());
+  const Eigen::Affine3d back = there.inverse();
+  TriangleMesh mesh = solid.mesh;
+  for (Eigen::Vector3d& vertex : mesh.vertices) vertex = there * vertex;
+  return {mesh, [solid, back](const Eigen::Vector3d& point) { return solid.contains(back * point); },
+          stretch.maxCoeff() * solid.off};
+}
+
+class FclDistances : public ::testing::TestWithParam<int> {};
+
+TEST_P(FclDistances, areThoseOfTheField) {
+  std::mt19937 generator = seededGenerator();
+  const Solid straight = randomSolid(generator, GetParam());
+  for (const Solid& solid : {straight, distorted(generator, straight), distorted(generator, straight)}) {
+    const double spacing = between(generator, 0.02, 0.04);
+    const DistanceField field = computeDistanceField(solid.mesh, spacing);
+    const FclMesh exact(solid.mesh);
+    const double share = std::min(1.0, 3000.0 / static_cast<double>(field.distance.size()));
+    int near = 0;
+    int inside = 0;
+    int outside = 0;
+    forEachSample(field, [&](const Eigen::Vector3d& point, double found) {
+      if (between(generator, 0.0, 1.0) > share) return;
+      const double distance = exact.distance(point);
+      // A sample is the float nearest to a double, which is off by no more than a float of its size can be;
+      // a thousandth more than that is far above what doubles of lengths below 10 m lose before.
+      const double tolerance = 1.001 * std::ldexp(distance, -24) + kPointRadius;
+      if (distance <= kExactReach * spacing) {
+        ++near;
+        // Nearer than this to its surface the inside is moved that far in.
+        if (distance > 1e-6 * spacing) {
+          EXPECT_NEAR(std::abs(found), distance, tolerance) << "at " << point.transpose();
+        }
+      } else {
+        EXPECT_LE(std::abs(found), distance + tolerance);
+        EXPECT_GE(std::abs(found), kExactReach * spacing - tolerance);
+      }
+      if (distance <= solid.off + 1e-6 * spacing) return;
+      const bool contained = solid.contains(point);
+      EXPECT_EQ(found < 0.0, contained) << "at " << point.transpose() << ", " << found;
+      ++(contained ? inside : outside);
+    });
+    EXPECT_GT(near, 100);
+    EXPECT_GT(inside, 10);
+    EXPECT_GT(outside, 100);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(ofBoxCylinderSphereHullAndStar, FclDistances, ::testing::Range(0, 5));
 
 /// Of several parts some are inside out, as where a modeller mirrored them; none overlap.
 TEST(DistanceField, partsThatAreInsideOutStayPartsOfTheSolid) {
