@@ -348,9 +348,11 @@ class Simulator::Implementation {
     progress_.last_step = step;
     progress_.steps += 1;
     steps_since_cleared_ += 1;
-    if (time_ >= end || !parameters_.displacement || steps_since_cleared_ >= kMostStepsUncleared ||
-        bodiesHaveMoved())
+    if (time_ >= end || !parameters_.displacement || bodiesHaveMoved()) {
       clearBodies();
+    } else if (steps_since_cleared_ % kMostStepsUnsorted == 0) {
+      engine_->sortSand(kMostStepsUnsorted);
+    }
   }
 
   /// Whether some body has moved so far that sand has to make way. Rays are dear, and a body crosses a column
@@ -474,8 +476,8 @@ class Simulator::Implementation {
   /// Speeds are known only once a step has read them. A step is tried that is a little shorter than the bound
   /// at the step before, and is repeated in the rare case that speeds have grown by more.
   static constexpr double kHeadroom = 0.97;
-  static constexpr double kLongestWayUncleared = 0.125;  // of a body between two castings of rays [cells]
-  static constexpr int kMostStepsUncleared = 4;  // in as many, waves travel a cell
+  static constexpr double kLongestWayUncleared = 0.25;  // of a body between two castings of rays [cells]
+  static constexpr int kMostStepsUnsorted = 4;  // in as many, waves travel a cell
 
   SimulatorParameters parameters_;
   Grid grid_;

@@ -29,6 +29,8 @@ class Engine {
   /// Bodies stand here now, and no others: the sand makes way. From under a body it goes by at most `hops`
   /// columns.
   virtual void moveBodies(const std::vector<PlacedBody>& bodies, int hops) = 0;
+  /// Sand has moved: what has come under bodies, or has filled the room there, is told from what has not.
+  virtual void sortSand(int hops) = 0;
   /// Computes a step of dt [s]. Returns the largest speed that it had to follow (Eq. 14, 34), that of bodies
   /// in the sand included [m/s]: if dt was too long for it, attempt again.
   virtual float attempt(float dt) = 0;

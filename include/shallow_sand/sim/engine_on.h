@@ -81,6 +81,10 @@ class EngineOn : public Engine {
     for (const PlacedBody& body : bodies) standing_[body.body] = body.window;
   }
 
+  void sortSand(int hops) override {
+    for (const Window& window : windows_) makeWay(BodyBins{nullptr, nullptr, nullptr, window, 0}, hops, false);
+  }
+
   float attempt(float dt) override {
     attempted_ = stepOf(dt);
     float speed = stepper_.attempt(attempted_, windows_, layer(next_));
