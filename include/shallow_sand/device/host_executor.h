@@ -69,6 +69,13 @@ class HostExecutor {
     }
   }
 
+  /// Calls function(part) once for each of `count` uneven parts of the work on a window.
+  template <class Function>
+  void forEachPart(const Window& window, int count, const Function& function) const {
+#pragma omp parallel for num_threads(threads_) schedule(dynamic) if (isWorthThreads(window))
+    for (int part = 0; part < count; ++part) function(part);
+  }
+
   /// Calls function(i, j) once for every cell of the window at which, or beside which within the window,
   /// value(i, j) is above 0. Other backends may call it for others, too.
   template <class Value, class Function>
