@@ -1,3 +1,4 @@
+#include "shallow_sand/coupling/rays_alone.h"
 #include "shallow_sand/device/cuda_executor.cuh"
 #include "shallow_sand/sim/engine_on.h"
 #include "shallow_sand/solver/grid_stepper.h"
@@ -5,8 +6,8 @@
 namespace shallow_sand {
 
 std::unique_ptr<Engine> makeCudaEngine(const EngineStart& start) {
-  return std::make_unique<EngineOn<CudaExecutor, GridStepper<CudaExecutor>>>(CudaExecutor(), start,
-                                                                             start.with_slopes);
+  return std::make_unique<EngineOn<CudaExecutor, RaysAlone, GridStepper<CudaExecutor>>>(
+      CudaExecutor(), RaysAlone(), start, start.with_slopes);
 }
 
 std::string cudaUnavailable() {

@@ -1,3 +1,4 @@
+#include "shallow_sand/coupling/rays_together.h"
 #include "shallow_sand/device/host_executor.h"
 #include "shallow_sand/sim/engine_on.h"
 #include "shallow_sand/solver/tiled_stepper.h"
@@ -6,8 +7,8 @@ namespace shallow_sand {
 
 std::unique_ptr<Engine> makeHostEngine(const EngineStart& start, int threads, bool sleeping,
                                        InstructionSet instructions) {
-  return std::make_unique<EngineOn<HostExecutor, TiledStepper>>(
-      HostExecutor(threads), start, start.grid,
+  return std::make_unique<EngineOn<HostExecutor, RaysTogether, TiledStepper>>(
+      HostExecutor(threads), RaysTogether(instructions), start, start.grid,
       TiledStepper::Options{start.with_slopes, sleeping, instructions});
 }
 

@@ -21,13 +21,21 @@ struct DistanceFieldView {
 
   /// The same for a place that is counted in samples, from the first one on.
   SHALLOW_SAND_HOST_DEVICE float sampleAt(float x, float y, float z) const {
-    if (!(x >= 0.0f && y >= 0.0f && z >= 0.0f && x < static_cast<float>(samples_x - 1) &&
-          y < static_cast<float>(samples_y - 1) && z < static_cast<float>(samples_z - 1))) {
-      return spacing;
-    }
-    const int i = static_cast<int>(x);
-    const int j = static_cast<int>(y);
-    const int k = static_cast<int>(z);
+    return covers(x, y, z) ? interpolateAt(x, y, z) : spacing;
+  }
+
+  /// Whether such a place is within the sampled box. Without branches, so that a compiler looks at several
+  /// places at once.
+  SHALLOW_SAND_HOST_DEVICE bool covers(float x, float y, float z) const {
+    return (x >= 0.0f) & (y >= 0.0f) & (z >= 0.0f) & (x < static_cast<float>(samples_x - 1)) &
+           (y < static_cast<float>(samples_y - 1)) & (z < static_cast<float>(samples_z - 1));
+  }
+
+  /// Trilinear interpolation at such a place; of no meaning, but allowed, outside of the box.
+  SHALLOW_SAND_HOST_DEVICE float interpolateAt(float x, float y, float z) const {
+    const int i = sampleBelow(x, samples_x);
+    const int j = sampleBelow(y, samples_y);
+    const int k = sampleBelow(z, samples_z);
     const float s = x - static_cast<float>(i);
     const float t = y - static_cast<float>(j);
     const float low = interpolateLayer(i, j, k, s, t);
@@ -36,11 +44,15 @@ struct DistanceFieldView {
   }
 
  private:
+  /// The sample before a place; the nearest one that has another behind it, if the place is outside.
+  SHALLOW_SAND_HOST_DEVICE static int sampleBelow(float place, int samples) {
+    return static_cast<int>(minimum(maximum(place, 0.0f), static_cast<float>(samples - 2)));
+  }
   SHALLOW_SAND_HOST_DEVICE float interpolateLayer(int i, int j, int k, float s, float t) const {
-    const float* row = distance + (static_cast<long long>(k) * samples_y + j) * samples_x + i;
-    const float* next = row + samples_x;
-    const float near = row[0] + s * (row[1] - row[0]);
-    const float far = next[0] + s * (next[1] - next[0]);
+    const int at = (k * samples_y + j) * samples_x + i;
+    const int next = at + samples_x;
+    const float near = distance[at] + s * (distance[at + 1] - distance[at]);
+    const float far = distance[next] + s * (distance[next + 1] - distance[next]);
     return near + t * (far - near);
   }
 };

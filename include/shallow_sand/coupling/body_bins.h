@@ -18,6 +18,12 @@ struct BodyBins {
   SHALLOW_SAND_HOST_DEVICE int binOf(int i, int j) const {
     return (j - window.row_begin) / kSize * across + (i - window.column_begin) / kSize;
   }
+  int count() const { return across * ((window.rows() + kSize - 1) / kSize); }
+  Window cellsOf(int bin) const {
+    const int i = window.column_begin + bin % across * kSize;
+    const int j = window.row_begin + bin / across * kSize;
+    return Window{i, j, i + kSize, j + kSize}.overlap(window);
+  }
 };
 
 }  // namespace shallow_sand

@@ -9,20 +9,15 @@ namespace shallow_sand {
 
 /// Eq. 25 and 26 for one column of the paper's coupling, in which sand does not make way: the length of what
 /// bodies fill of its sand, Ω_s of Eq. 20, and their mean velocity over it.
-struct FindSubmerged {
-  BodyBins bins;
+struct FindSubmerged : BodiesOverBed {
   const float* depth;
-  const float* bed;
   ContactFields contact;  ///< length and velocity are written
-  int across;             ///< cells in a row
-  float spacing;
 
-  SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {
-    const long long at = static_cast<long long>(j) * across + i;
-    const float x = (static_cast<float>(i) + 0.5f) * spacing;
-    const float y = (static_cast<float>(j) + 0.5f) * spacing;
+  SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j, const SolidIntervals& solids) const {
+    const long long at = cellAt(i, j);
+    const float x = centre(i);
+    const float y = centre(j);
     const float surface = bed[at] + depth[at];
-    const SolidIntervals solids = solidsAt(bins, i, j, spacing, bed[at]);
     float length = 0.0f;
     Vector3 sum;
     float reached = bed[at];

@@ -5,35 +5,37 @@
 
 namespace shallow_sand {
 
-/// Casts the ray of one column through all bodies as they stand now, and tells apart what of its sand lies
-/// under the lowest solid and what lies on it. Of sand into which a body has come,
+/// Tells apart what of a column's sand lies under its lowest solid and what lies on it, after a ray was cast
+/// through all bodies as they stand now. Of sand into which a body has come,
 /// - all that stands above its underside lies on it, if the body is buried deeper than it is high: a plate
 ///   that moves through sand lifts what is above it;
 /// - else what stands above its upper side lies on it, and what is too much under it stays there for
 ///   DisplaceSand to push aside: sand runs over a low blade, and is pushed before it.
 /// A load rises and sinks with its solid, unless that rises at once by more than a cell and over the load:
 /// then a wall has come, and sweeps the load. Where no solid is left, the load falls on the ground.
-struct MeetBodies {
-  BodyBins bins;
+struct MeetBodies : BodiesOverBed {
   SandColumns columns;
   ContactFields contact;
-  const float* bed;
   SandLayer ground;  ///< what the column's ground is now
   SandLayer load;
-  int across;  ///< cells in a row
-  float spacing;
 
-  bool cast;  ///< false: bodies stand where they stood the last time, only sand has moved
+  SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j, const SolidIntervals& solids) const {
+    const float old_top = contact.top[cellAt(i, j)];
+    record(lowestSolid(solids, spacing), i, j);
+    meet(i, j, old_top);
+  }
 
-  SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {
-    const long long at = static_cast<long long>(j) * across + i;
+  /// Bodies stand where they stood the last time, only sand has moved.
+  SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const { meet(i, j, contact.top[cellAt(i, j)]); }
+
+ private:
+  SHALLOW_SAND_HOST_DEVICE void meet(int i, int j, float old_top) const {
+    const long long at = cellAt(i, j);
     const float b = bed[at];
     Sand below = columns.ground(at);
     Sand above = columns.load(at);
     const bool had_load = above.h > 0.0f;
-    const float old_top = contact.top[at];
     const float surface = b + below.h;
-    if (cast) castRay(i, j, surface);
     const float clearance = contact.clearance[at];
     const float top = contact.top[at];
     if (!contact.isCovered(at)) {
@@ -50,14 +52,12 @@ struct MeetBodies {
     load.set(at, above);
   }
 
- private:
-  SHALLOW_SAND_HOST_DEVICE void castRay(int i, int j, float surface) const {
-    const long long at = static_cast<long long>(j) * across + i;
-    const LowestSolid solid = lowestSolid(solidsAt(bins, i, j, spacing, bed[at]), spacing);
+  SHALLOW_SAND_HOST_DEVICE void record(const LowestSolid& solid, int i, int j) const {
+    const long long at = cellAt(i, j);
     contact.clearance[at] = maximum(solid.bottom - bed[at], 0.0f);
     contact.top[at] = solid.top;
     contact.headroom[at] = solid.next - solid.top;
-    const Vector3 velocity = velocityOf(solid, i, j, surface);
+    const Vector3 velocity = velocityOf(solid, i, j, bed[at] + columns.ground(at).h);
     contact.velocity_x[at] = velocity.x;
     contact.velocity_y[at] = velocity.y;
     contact.velocity_z[at] = velocity.z;
@@ -73,8 +73,8 @@ struct MeetBodies {
 
   SHALLOW_SAND_HOST_DEVICE Vector3 velocityOf(const LowestSolid& solid, int i, int j, float surface) const {
     if (solid.lowest_body < 0) return {};
-    const float x = (static_cast<float>(i) + 0.5f) * spacing;
-    const float y = (static_cast<float>(j) + 0.5f) * spacing;
+    const float x = centre(i);
+    const float y = centre(j);
     if (!(surface > solid.bottom)) return bins.bodies[solid.highest_body].velocityAt({x, y, solid.top});
     // The velocity is linear along the ray: its mean over the interval is its value in the middle.
     return bins.bodies[solid.lowest_body].velocityAt(
@@ -83,21 +83,16 @@ struct MeetBodies {
 };
 
 /// Depth of the sand inside of bodies, of one column. [m]
-struct MeasureOverlap {
-  BodyBins bins;
+struct MeasureOverlap : BodiesOverBed {
   SandColumns columns;
-  const float* bed;
   const float* top;
   float* overlap;
-  int across;
-  float spacing;
 
-  SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {
-    const long long at = static_cast<long long>(j) * across + i;
+  SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j, const SolidIntervals& solids) const {
+    const long long at = cellAt(i, j);
     const float b = bed[at];
     const float ground = columns.ground(at).h;
     const float load = columns.load(at).h;
-    const SolidIntervals solids = solidsAt(bins, i, j, spacing, b);
     float sum = 0.0f;
     float reached = b;
     for (int k = 0; k < solids.count; ++k) {

@@ -43,17 +43,22 @@ struct RayInField {
   Vector3 base;
   Vector3 rise;  ///< [1/m]
 
-  SHALLOW_SAND_HOST_DEVICE RayInField(const BodyView& body, float x, float y) {
+  SHALLOW_SAND_HOST_DEVICE static RayInField at(const BodyView& body, float x, float y) {
     const Vector3 level = body.toBody({x, y, body.position.z});
     const float per_spacing = 1.0f / body.field.spacing;
-    base = {(level.x - body.field.origin.x) * per_spacing, (level.y - body.field.origin.y) * per_spacing,
-            (level.z - body.field.origin.z) * per_spacing};
-    rise = {body.axis_z.x * per_spacing, body.axis_z.y * per_spacing, body.axis_z.z * per_spacing};
+    return {{(level.x - body.field.origin.x) * per_spacing, (level.y - body.field.origin.y) * per_spacing,
+             (level.z - body.field.origin.z) * per_spacing},
+            {body.axis_z.x * per_spacing, body.axis_z.y * per_spacing, body.axis_z.z * per_spacing}};
+  }
+
+  SHALLOW_SAND_HOST_DEVICE Vector3 placeAt(float height) const {
+    return {base.x + height * rise.x, base.y + height * rise.y, base.z + height * rise.z};
   }
 
   /// Distance to the body's surface at a height. [m]
   SHALLOW_SAND_HOST_DEVICE float sample(const DistanceFieldView& field, float height) const {
-    return field.sampleAt(base.x + height * rise.x, base.y + height * rise.y, base.z + height * rise.z);
+    const Vector3 place = placeAt(height);
+    return field.sampleAt(place.x, place.y, place.z);
   }
 
   /// Keeps of the heights from `low` to `high` those at which the ray is within the field's box.
@@ -66,55 +71,94 @@ struct RayInField {
  private:
   SHALLOW_SAND_HOST_DEVICE static void clip(float start, float rise, int samples, float& low, float& high) {
     const float last = static_cast<float>(samples - 1);
-    if (fabsf(rise) < 1e-6f) {
-      if (start < 0.0f || start > last) high = low;
-      return;
-    }
-    const float one = -start / rise;
-    const float other = (last - start) / rise;
+    // Along these faces of the box, a ray meets them far away, if at all.
+    const float slope = fabsf(rise) < 1e-6f ? 1e-30f : rise;
+    const float one = -start / slope;
+    const float other = (last - start) / slope;
     low = maximum(low, minimum(one, other));
     high = minimum(high, maximum(one, other));
   }
 };
 
+/// A place on a ray through a body.
+struct RaySample {
+  float z;         ///< height above the body's origin [m]
+  float distance;  ///< to the body's surface [m]
+
+  SHALLOW_SAND_HOST_DEVICE bool inside() const { return distance < 0.0f; }
+  /// Height of the next sample: as far as no surface can be nearer, but no higher than `to`. [m]
+  SHALLOW_SAND_HOST_DEVICE float nextZ(float spacing, float to) const {
+    return minimum(z + maximum(spacing, fabsf(distance)), to);
+  }
+};
+
+/// The solid parts that a march up a ray meets of one body.
+struct SolidsOfBody {
+  int number;
+  float origin;  ///< height of the body's origin [m]
+
+  /// From a sample to the next, of which one is inside of the body: the surface is found by linear
+  /// interpolation. `bottom`: where the march came into the body, above its origin [m]
+  SHALLOW_SAND_HOST_DEVICE void cross(const RaySample& sample, const RaySample& next, float& bottom,
+                                      SolidIntervals& solids) const {
+    const float crossing =
+        sample.z + (next.z - sample.z) * (sample.distance / (sample.distance - next.distance));
+    if (next.inside()) {
+      bottom = crossing;
+    } else {
+      add(bottom, crossing, solids);
+    }
+  }
+  SHALLOW_SAND_HOST_DEVICE void add(float bottom, float top, SolidIntervals& solids) const {
+    solids.insert({origin + bottom, origin + top, number});
+  }
+};
+
 /// Marches up a vertical ray through one body, from `from` on, and adds the solid intervals (section 5, steps
-/// 1–3: the body's signed distance field is sampled along the ray; where its sign changes, the crossing is
-/// found by linear interpolation). [m]
+/// 1–3: the body's signed distance field is sampled along the ray; where its sign changes, there is a
+/// crossing). [m]
 SHALLOW_SAND_HOST_DEVICE inline void castRay(const BodyView& body, int number, float x, float y, float from,
                                              SolidIntervals& solids) {
-  const RayInField ray(body, x, y);
-  const float origin = body.position.z;
-  const float shortest = body.field.spacing;
-  float z = from - origin;
-  float to = body.high.z - origin;
+  const RayInField ray = RayInField::at(body, x, y);
+  const SolidsOfBody of_body{number, body.position.z};
+  float z = from - body.position.z;
+  float to = body.high.z - body.position.z;
   ray.clip(body.field, z, to);
   if (!(z < to)) return;
-  float distance = ray.sample(body.field, z);
   float bottom = z;
-  while (z < to) {
-    const float next_z = minimum(z + maximum(shortest, fabsf(distance)), to);
-    const float next = ray.sample(body.field, next_z);
-    const bool inside = distance < 0.0f;
-    const bool next_inside = next < 0.0f;
-    if (inside != next_inside) {
-      const float crossing = z + (next_z - z) * (distance / (distance - next));
-      if (next_inside) {
-        bottom = crossing;
-      } else {
-        solids.insert({origin + bottom, origin + crossing, number});
-      }
-    }
-    z = next_z;
-    distance = next;
-  }
-  if (distance < 0.0f) solids.insert({origin + bottom, origin + to, number});
+  RaySample sample{z, body.field.spacing};  // it comes from outside
+  RaySample next = sample;
+  do {
+    next.distance = ray.sample(body.field, next.z);
+    if (sample.inside() != next.inside()) of_body.cross(sample, next, bottom, solids);
+    sample = next;
+    next.z = sample.nextZ(body.field.spacing, to);
+  } while (sample.z < to);
+  if (sample.inside()) of_body.add(bottom, to, solids);
 }
 
-/// The solid parts of the column of a cell, above a bed of elevation `b` [m].
-SHALLOW_SAND_HOST_DEVICE inline SolidIntervals solidsAt(const BodyBins& bins, int i, int j, float spacing,
-                                                        float b) {
-  const float x = (static_cast<float>(i) + 0.5f) * spacing;
-  const float y = (static_cast<float>(j) + 0.5f) * spacing;
+/// Bodies over the bed of a grid, into which a ray is cast up each column.
+struct BodiesOverBed {
+  BodyBins bins;
+  const float* bed;
+  int across;     ///< cells in a row
+  float spacing;  ///< [m]
+
+  SHALLOW_SAND_HOST_DEVICE long long cellAt(int i, int j) const {
+    return static_cast<long long>(j) * across + i;
+  }
+  /// Where the centre of a cell is, along x or y. [m]
+  SHALLOW_SAND_HOST_DEVICE float centre(int cell) const {
+    return (static_cast<float>(cell) + 0.5f) * spacing;
+  }
+};
+
+/// The solid parts of the column of a cell.
+SHALLOW_SAND_HOST_DEVICE inline SolidIntervals solidsAt(const BodiesOverBed& bodies, int i, int j) {
+  const BodyBins& bins = bodies.bins;
+  const float x = bodies.centre(i);
+  const float y = bodies.centre(j);
+  const float b = bodies.bed[bodies.cellAt(i, j)];
   SolidIntervals solids;
   const int bin = bins.binOf(i, j);
   for (int k = bins.first[bin]; k < bins.first[bin + 1]; ++k) {

@@ -69,6 +69,13 @@ class HostExecutor {
     }
   }
 
+  /// Calls function(part) once for each of `count` uneven parts of the work on a window.
+  template <class Function>
+  void forEachPart(const Window& window, int count, const Function& function) const {
+#pragma omp parallel for num_threads(threads_) schedule(dynamic) if (isWorthThreads(window))
+    for (int part = 0; part < count; ++part) function(part);
+  }
+
   /// Cells of which only some need work.
   using Cells = CellMask;
 

@@ -17,8 +17,9 @@
 
 namespace shallow_sand {
 
-/// The engine on one backend. Executor: HostExecutor or CudaExecutor; Stepper: what computes a step on it.
-template <class Executor, class Stepper>
+/// The engine on one backend. Executor: HostExecutor or CudaExecutor; Rays: what casts rays on it; Stepper:
+/// what computes a step on it.
+template <class Executor, class Rays, class Stepper>
 class EngineOn : public Engine {
   template <class T>
   using Memory = typename Executor::template Memory<T>;
@@ -26,8 +27,9 @@ class EngineOn : public Engine {
  public:
   /// @param stepper what the stepper needs besides the executor
   template <class... StepperArguments>
-  EngineOn(Executor executor, const EngineStart& start, const StepperArguments&... stepper)
+  EngineOn(Executor executor, const Rays& rays, const EngineStart& start, const StepperArguments&... stepper)
       : executor_(std::move(executor)),
+        rays_(rays),
         stepper_(executor_, stepper...),
         grid_(start.grid),
         sand_(start.sand),
@@ -161,9 +163,8 @@ class EngineOn : public Engine {
     std::vector<Window> windows;
     for (const PlacedBody& body : bodies) windows.push_back(body.window);
     forEachBins(bodies, withoutOverlap(windows), [&](const BodyBins& bins) {
-      executor_.forEachCell(bins.window,
-                            MeasureOverlap{bins, columns(), bed_.data(), contacts_.front().top.data(),
-                                           overlap.data(), grid_.columns, grid_.spacing});
+      rays_.forEachColumn(
+          executor_, MeasureOverlap{overBed(bins), columns(), contacts_.front().top.data(), overlap.data()});
     });
     const std::vector<float> depths = downloaded(overlap);
     return std::accumulate(depths.begin(), depths.end(), 0.0) * grid_.cellArea();
@@ -281,8 +282,12 @@ class EngineOn : public Engine {
     const SandLayer ground = layer(next_);
     const SandLayer load = layer(contacts_.front().next_hidden);
     const SandLayer pushed = layer(contacts_.front().pushed);
-    executor_.forEachCell(window, MeetBodies{bins, columns(), contact(), bed_.data(), ground, load,
-                                             grid_.columns, grid_.spacing, cast});
+    const MeetBodies meet{overBed(bins), columns(), contact(), ground, load};
+    if (cast) {
+      rays_.forEachColumn(executor_, meet);
+    } else {
+      executor_.forEachCell(window, meet);
+    }
     executor_.forEachCell(Window::line(window.columns()),
                           DistanceAlongColumns{contact().clearance, ground.depth, distance, grid_.columns,
                                                grid_.spacing, window});
@@ -317,8 +322,7 @@ class EngineOn : public Engine {
 
   void drag(const BodyBins& bins) {
     stepper_.touch(bins.window);
-    executor_.forEachCell(bins.window, FindSubmerged{bins, state_.depth.data(), bed_.data(), contact(),
-                                                     grid_.columns, grid_.spacing});
+    rays_.forEachColumn(executor_, FindSubmerged{overBed(bins), state_.depth.data(), contact()});
     executor_.forEachCell(bins.window,
                           DragSand{contact(), layer(state_), grid_.columns, grid_.spacing, bins.window});
   }
@@ -453,6 +457,10 @@ class EngineOn : public Engine {
     return {state.depth.data(), state.momentum_x.data(), state.momentum_y.data()};
   }
 
+  BodiesOverBed overBed(const BodyBins& bins) const {
+    return {bins, bed_.data(), grid_.columns, grid_.spacing};
+  }
+
   ContactFields contact() {
     Contacts& c = contacts_.front();
     return {c.clearance.data(),  c.top.data(),        c.headroom.data(),   c.length.data(),
@@ -495,6 +503,7 @@ class EngineOn : public Engine {
   }
 
   Executor executor_;
+  Rays rays_;
   Stepper stepper_;
   Grid grid_;
   SandConstants sand_;
