@@ -186,8 +186,13 @@ class Simulator::Implementation {
     edit.validate();
     const LocalRegion region = localRegion(edit.region, grid_);
     if (windowOf(region, grid_).empty()) requireOnGrid("center", edit.region.center);
-    // Sand may have come to lie where a body is.
-    placed_anew_ = placed_anew_ || !bodies_.empty();
+    if (!bodies_.empty()) {
+      // A body that hangs high above the sand catches what comes down now.
+      engine_->expectSand(region);
+      clearBodies();
+      // Sand may have come to lie where a body is.
+      placed_anew_ = true;
+    }
     return engine_->edit(region, edit.operation, static_cast<float>(edit.value));
   }
 
@@ -350,8 +355,8 @@ class Simulator::Implementation {
     steps_since_cleared_ += 1;
     if (time_ >= end || !parameters_.displacement || bodiesHaveMoved()) {
       clearBodies();
-    } else if (steps_since_cleared_ % kMostStepsUnsorted == 0) {
-      engine_->sortSand(kMostStepsUnsorted);
+    } else if (steps_since_cleared_ % kMostStepsUnsorted == 0 && !engine_->sortSand(kMostStepsUnsorted)) {
+      clearBodies();
     }
   }
 
@@ -477,7 +482,7 @@ class Simulator::Implementation {
   /// at the step before, and is repeated in the rare case that speeds have grown by more.
   static constexpr double kHeadroom = 0.97;
   static constexpr double kLongestWayUncleared = 0.25;  // of a body between two castings of rays [cells]
-  static constexpr int kMostStepsUnsorted = 4;  // in as many, waves travel a cell
+  static constexpr int kMostStepsUnsorted = 4;          // in as many, waves travel a cell
 
   SimulatorParameters parameters_;
   Grid grid_;

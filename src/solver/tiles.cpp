@@ -38,6 +38,17 @@ void Tiles::touch(const Window& cells) {
   }
 }
 
+bool Tiles::isDue(const Window& cells) const {
+  if (cells.empty()) return false;
+  for (int row = tileOfRow(cells.row_begin); row <= tileOfRow(cells.row_end - 1); ++row) {
+    for (int column = tileOfColumn(cells.column_begin); column <= tileOfColumn(cells.column_end - 1);
+         ++column) {
+      if (state(column, row) != kAsleep) return true;
+    }
+  }
+  return false;
+}
+
 void Tiles::wake(int tile_column, int tile_row) {
   states_[index(tile_column, tile_row)] = kDue;
   bounds_ = bounds_.united({tile_column, tile_row, tile_column + 1, tile_row + 1});

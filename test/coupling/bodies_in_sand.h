@@ -135,6 +135,13 @@ inline Eigen::Vector2d highestOnLine(const Grid& grid, const Fields& fields, con
   return top;
 }
 
+/// Friction holds no steeper slope; an avalanche keeps moving while the slope is already a little flatter
+/// than the one at which it began. [degrees]
+inline void expectSlopeAtRest(double slope, double friction_angle) {
+  EXPECT_LT(slope, friction_angle + 0.5);
+  EXPECT_GT(slope, friction_angle - 6.0);
+}
+
 inline void expectSoundSand(const Fields& fields) {
   for (std::size_t k = 0; k < fields.depth.size(); ++k) {
     ASSERT_TRUE(std::isfinite(sandOfColumn(fields, k)) && sandOfColumn(fields, k) >= 0.0 &&

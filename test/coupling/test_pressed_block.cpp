@@ -116,7 +116,7 @@ TEST(PressedBlock, LeavesACraterWithWallsAtTheAngleOfRepose) {
     const double inner = flankAngle(grid, rest, rim, -heading, floor) / kDegree;
     std::printf("rim %.4f m over the old surface, %.2f m from the middle; walls %.1f deg inside\n",
                 surfaceAt(grid, rest, rim) - kSurface, (rim - kMiddle).norm(), inner);
-    EXPECT_NEAR(inner, 32.0, 3.0);
+    expectSlopeAtRest(inner, 32.0);
     EXPECT_GT(surfaceAt(grid, rest, rim), kSurface);
   }
   EXPECT_EQ(simulator.bodyOverlap(), 0.0);

@@ -5,6 +5,7 @@
 #include "random_scene.h"
 #include "random_seed.h"
 #include "shallow_sand/bodies/motion.h"
+#include "shallow_sand/coupling/rays_alone.h"
 #include "shallow_sand/device/host_executor.h"
 #include "shallow_sand/sim/engine_on.h"
 #include "shallow_sand/solver/grid_stepper.h"
@@ -14,7 +15,7 @@ namespace {
 
 /// Every cell, one after the other, each computing all that it needs: what the equations say, and what a GPU
 /// does.
-using PlainEngine = EngineOn<HostExecutor, GridStepper<HostExecutor>>;
+using PlainEngine = EngineOn<HostExecutor, RaysAlone, GridStepper<HostExecutor>>;
 
 EngineStart startOf(const RandomScene& scene) {
   const SimulatorParameters& parameters = scene.sand.parameters;
@@ -91,7 +92,7 @@ void expectSame(const Engine& plain, const Engine& tiled) {
 /// Runs both side by side; some steps are attempted twice, as after a bound that was broken.
 void compare(std::mt19937& random, const RandomScene& scene, int steps) {
   const EngineStart start = startOf(scene);
-  PlainEngine plain(HostExecutor(1), start, start.with_slopes);
+  PlainEngine plain(HostExecutor(1), RaysAlone{}, start, start.with_slopes);
   const std::unique_ptr<Engine> tiled = makeHostEngine(start, 1, true, instructionSets().back());
   double time = 0.0;
   const std::initializer_list<Engine*> engines{&plain, tiled.get()};

@@ -82,4 +82,18 @@ struct SandColumns {
   }
 };
 
+/// Above 0 where sand reaches above an elevation, or more than dust lies on a body.
+struct SandAbove {
+  SandColumns columns;
+  float elevation;  ///< [m]
+  float dust;       ///< depth [m]
+  int across;       ///< cells in a row
+
+  SHALLOW_SAND_HOST_DEVICE float operator()(int i, int j) const {
+    const long long at = static_cast<long long>(j) * across + i;
+    const bool lies = columns.load(at).h > dust;
+    return lies || columns.visible_bed[at] + columns.visible.depth[at] > elevation ? 1.0f : 0.0f;
+  }
+};
+
 }  // namespace shallow_sand

@@ -192,6 +192,25 @@ struct HangingCover {
   }
 };
 
+/// Above 0 where FlowLoads changed anything.
+struct FlowedSand {
+  FlowLoads flow;
+
+  SHALLOW_SAND_HOST_DEVICE float operator()(int i, int j) const {
+    const long long at = flow.step.index(i, j);
+    if (flow.flowed[at] == 0) return 0.0f;
+    return differ(flow.columns.visible.get(at), flow.visible.get(at)) ||
+                   differ(flow.columns.hidden.get(at), flow.hidden.get(at))
+               ? 1.0f
+               : 0.0f;
+  }
+
+ private:
+  SHALLOW_SAND_HOST_DEVICE static bool differ(const Sand& one, const Sand& other) {
+    return one.h != other.h || one.hu != other.hu || one.hv != other.hv;
+  }
+};
+
 /// Takes over what FlowLoads wrote.
 struct CopyLoads {
   FlowLoads flow;

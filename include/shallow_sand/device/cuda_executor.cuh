@@ -87,6 +87,10 @@ class CudaExecutor {
     return window;
   }
   Cells grown(const Cells& cells) const { return cells; }
+  template <class Value>
+  bool holdsAny(const Cells& cells, const Value& value) {
+    return maximumOverCells(cells, value) > 0.0f;
+  }
 
   template <class Function>
   float maximumOverCells(const Window& window, const Function& function) {

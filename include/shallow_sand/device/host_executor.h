@@ -104,6 +104,16 @@ class HostExecutor {
 
   Cells grown(const Cells& cells) const { return cells.grown(); }
 
+  /// Whether value(i, j) is above 0 for any of the cells.
+  template <class Value>
+  bool holdsAny(const Cells& cells, const Value& value) const {
+    bool any = false;
+    const Window& window = cells.window();
+    for (int j = window.row_begin; j < window.row_end && !any; ++j)
+      cells.forEachInRow(j, [&](int i, int row) { any = any || value(i, row) > 0.0f; });
+    return any;
+  }
+
   /// Calls function(i, j) once for each of the cells.
   template <class Function>
   void forEachCell(const Cells& cells, const Function& function) const {

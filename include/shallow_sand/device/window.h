@@ -29,6 +29,11 @@ struct Window {
             cell(high_y + spacing, grid.rows)};
   }
 
+  bool operator==(const Window& other) const {
+    return column_begin == other.column_begin && row_begin == other.row_begin &&
+           column_end == other.column_end && row_end == other.row_end;
+  }
+
   SHALLOW_SAND_HOST_DEVICE int columns() const { return column_end - column_begin; }
   SHALLOW_SAND_HOST_DEVICE int rows() const { return row_end - row_begin; }
   SHALLOW_SAND_HOST_DEVICE bool holds(int i, int j) const {

@@ -11,8 +11,8 @@ namespace shallow_sand {
 struct PlacedBody {
   std::size_t body;
   BodyView view;
-  Window window;  ///< columns it may touch
-  bool rests;     ///< neither moves nor moved when it was placed the last time, which was here
+  Window window;       ///< columns it may touch
+  bool rests = false;  ///< neither moves nor moved when it was placed the last time, which was here
 };
 
 /// Rectangles that hold all the given ones, and do not overlap.

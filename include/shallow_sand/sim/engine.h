@@ -30,7 +30,10 @@ class Engine {
   /// columns.
   virtual void moveBodies(const std::vector<PlacedBody>& bodies, int hops) = 0;
   /// Sand has moved: what has come under bodies, or has filled the room there, is told from what has not.
-  virtual void sortSand(int hops) = 0;
+  /// Returns false if it has come near a body that was far above it: then bodies must be placed again.
+  virtual bool sortSand(int hops) = 0;
+  /// Sand will fall on this region before bodies are placed the time after the next.
+  virtual void expectSand(const LocalRegion& region) = 0;
   /// Computes a step of dt [s]. Returns the largest speed that it had to follow (Eq. 14, 34), that of bodies
   /// in the sand included [m/s]: if dt was too long for it, attempt again.
   virtual float attempt(float dt) = 0;

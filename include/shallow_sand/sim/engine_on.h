@@ -63,8 +63,9 @@ class EngineOn : public Engine {
     pours_.push_back(std::move(pour));
   }
 
-  void moveBodies(const std::vector<PlacedBody>& bodies, int hops) override {
+  void moveBodies(const std::vector<PlacedBody>& all, int hops) override {
     if (contacts_.empty()) return;
+    const std::vector<PlacedBody> bodies = nearSand(all);
     std::vector<Window> touched;
     // One more column on each side is free to take sand.
     for (const PlacedBody& body : bodies) touched.push_back(body.window.grown(1, grid_));
@@ -76,25 +77,32 @@ class EngineOn : public Engine {
       const bool cast = std::any_of(moved.begin(), moved.end(), [&](const Window& window) {
         return !window.overlap(bins.window).empty();
       });
-      displacement_ ? makeWay(bins, hops, cast) : drag(bins);
+      if (!displacement_) return drag(bins);
+      if (cast) return makeWay(bins, hops, true);
+      sortSand(bins.window, hops);
     });
-    windows_ = now;
+    watch(now, moved);
     standing_.clear();
     for (const PlacedBody& body : bodies) standing_[body.body] = body.window;
   }
 
-  void sortSand(int hops) override {
-    for (const Window& window : windows_) makeWay(BodyBins{nullptr, nullptr, nullptr, window, 0}, hops, false);
+  bool sortSand(int hops) override {
+    if (std::any_of(apart_.begin(), apart_.end(), [&](const PlacedBody& body) { return isNearSand(body); }))
+      return false;
+    for (const Window& window : windows_) sortSand(window, hops);
+    return true;
   }
+
+  void expectSand(const LocalRegion& region) override { expected_.push_back(windowOf(region, grid_)); }
 
   float attempt(float dt) override {
     attempted_ = stepOf(dt);
     float speed = stepper_.attempt(attempted_, windows_, layer(next_));
-    const ContactSpeed contact_speed{contacts_.empty() ? ContactFields{} : contact(),
-                                     contacts_.empty() ? SandColumns{} : columns(),
-                                     Step<true, false>{attempted_}};
-    for (const Window& window : windows_)
-      speed = std::max(speed, executor_.maximumOverCells(window, contact_speed));
+    for (std::size_t k = 0; k < windows_.size(); ++k) {
+      const ContactSpeed contact_speed{contact(), columns(), Step<true, false>{attempted_}};
+      if (!sleeps(k)) watched_[k].speed = executor_.maximumOverCells(windows_[k], contact_speed);
+      speed = std::max(speed, watched_[k].speed);
+    }
     return speed;
   }
 
@@ -189,7 +197,9 @@ class EngineOn : public Engine {
     bed_ = uploaded(fields.bed);
     stepper_.touch(Window::all(grid_));
     windows_ = contacts.windows;
+    watched_.assign(windows_.size(), Watched{});
     standing_.clear();
+    apart_.clear();
     std::vector<Cover> cover;
     for (const float value : contacts.cover) cover.push_back(static_cast<Cover>(static_cast<int>(value)));
     Fields layers = fields;
@@ -249,6 +259,60 @@ class EngineOn : public Engine {
     Memory<std::uint8_t> flowed;
     Memory<int> distance;
   };
+
+  /// What is known of the sand under and on the bodies of a window.
+  struct Watched {
+    bool rests = false;  ///< nothing there has moved, and nothing will that sand from beside does not move
+    bool flows = true;   ///< loads have moved in the last step
+    float speed = 0.0f;  ///< largest, as ContactSpeed has it [m/s]
+  };
+
+  bool sleeps(std::size_t k) const { return watched_[k].rests && !stepper_.isDue(windows_[k]); }
+
+  /// What is known goes on where no body has moved.
+  void watch(const std::vector<Window>& now, const std::vector<Window>& moved) {
+    std::vector<Watched> watched(now.size());
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      const auto was = std::find(windows_.begin(), windows_.end(), now[k]);
+      const bool stays = std::none_of(moved.begin(), moved.end(),
+                                      [&](const Window& window) { return !window.overlap(now[k]).empty(); });
+      if (stays && was != windows_.end()) watched[k] = watched_[was - windows_.begin()];
+    }
+    windows_ = now;
+    watched_ = std::move(watched);
+  }
+
+  /// Where no body has moved.
+  void sortSand(const Window& window, int hops) {
+    const auto here = std::find(windows_.begin(), windows_.end(), window);
+    if (here != windows_.end()) {
+      Watched& watched = watched_[here - windows_.begin()];
+      const SandWithoutRoom rest{contact(), columns(), grid_.columns};
+      watched.rests = !stepper_.isDue(window) && !watched.flows &&
+                      (watched.rests || executor_.partsWith(window, rest).empty());
+      if (watched.rests) return;
+    }
+    makeWay(BodyBins{nullptr, nullptr, nullptr, window, 0}, hops, false);
+  }
+
+  /// Those of the bodies that sand may touch before they are placed again; the others are apart.
+  std::vector<PlacedBody> nearSand(const std::vector<PlacedBody>& all) {
+    std::vector<PlacedBody> near;
+    apart_.clear();
+    for (const PlacedBody& body : all) (isNearSand(body) ? near : apart_).push_back(body);
+    expected_.clear();
+    return near;
+  }
+  bool isNearSand(const PlacedBody& body) {
+    const Window around = body.window.grown(1, grid_);
+    const auto falls = [&](const Window& window) { return !around.overlap(window).empty(); };
+    const bool sand_falls = std::any_of(expected_.begin(), expected_.end(), falls) ||
+                            std::any_of(pours_.begin(), pours_.end(),
+                                        [&](const PourOnBackend& pour) { return falls(pour.change.window); });
+    if (sand_falls) return true;
+    const float reach = body.view.low.z - kNearSand * grid_.spacing;
+    return executor_.maximumOverCells(around, SandAbove{columns(), reach, sand_.film, grid_.columns}) > 0.0f;
+  }
 
   /// Where bodies are, or were the last time, that do not rest.
   std::vector<Window> windowsOfMoved(const std::vector<PlacedBody>& bodies) const {
@@ -328,7 +392,10 @@ class EngineOn : public Engine {
   }
 
   void flowLoads() {
-    for (const Window& window : windows_) {
+    for (std::size_t k = 0; k < windows_.size(); ++k) {
+      if (sleeps(k)) continue;
+      const Window& window = windows_[k];
+      watched_[k].rests = false;
       FlowLoads flow{Step<true, false>{attempted_},
                      columns(),
                      contact(),
@@ -336,9 +403,11 @@ class EngineOn : public Engine {
                      contacts_.front().flowed.data(),
                      layer(next_),
                      layer(contacts_.front().next_hidden)};
-      stepper_.touch(window);
       const auto near = executor_.grown(executor_.cellsWith(window, HangingCover{flow}));
       executor_.forEachCell(near, flow);
+      watched_[k].flows = executor_.holdsAny(near, FlowedSand{flow});
+      if (!watched_[k].flows) continue;
+      stepper_.touch(window);
       executor_.forEachCell(near, CopyLoads{flow});
     }
   }
@@ -495,6 +564,7 @@ class EngineOn : public Engine {
     return step;
   }
 
+  static constexpr float kNearSand = 4.0f;       ///< higher above sand, a body is not looked at [cells]
   static constexpr int kPassesOfPushedSand = 8;  ///< even
 
   static double sum(const Memory<double>& memory) {
@@ -526,6 +596,9 @@ class EngineOn : public Engine {
   GrowingMemory<int> bin_first_;
   GrowingMemory<int> bin_members_;
   std::map<std::size_t, Window> standing_;  // columns of each body, when they were placed the last time
+  std::vector<PlacedBody> apart_;           // bodies too high above the sand to touch it
+  std::vector<Window> expected_;            // where sand will come down before bodies are placed again
+  std::vector<Watched> watched_;            // of each of the windows
   std::vector<Window> windows_;  // columns that bodies may touch, at the last rays; they do not overlap
 };
 

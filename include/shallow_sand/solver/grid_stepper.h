@@ -15,6 +15,7 @@ class GridStepper {
 
   /// Cells of the window were changed from outside.
   void touch(const Window&) {}
+  bool isDue(const Window&) const { return true; }
 
   /// Computes the next state. Returns the largest signal speed of the present one. [m/s]
   /// @param bodies columns that bodies may touch

@@ -25,6 +25,9 @@ class TiledStepper {
   /// Cells of the window were changed from outside, or are near a body.
   void touch(const Window& cells) { tiles_.touch(cells); }
 
+  /// Whether the next step computes any cell of the window.
+  bool isDue(const Window& cells) const { return tiles_.isDue(cells); }
+
   /// Computes the next state. Returns the largest signal speed of the present one. [m/s]
   /// @param bodies columns that bodies may touch
   float attempt(const StepArguments& arguments, const std::vector<Window>& bodies, const SandFieldsOut& out);

@@ -33,6 +33,8 @@ class Tiles {
 
   /// The cells of the window have changed, or may change in ways that a step does not see.
   void touch(const Window& cells);
+  /// Whether any cell of the window is in a tile that is due.
+  bool isDue(const Window& cells) const;
 
   /// Rectangles of whole tiles that hold all tiles that are due and no other, at most `widest` columns and
   /// `highest` rows of cells each. Valid until the next call.
