@@ -355,7 +355,8 @@ class Simulator::Implementation {
     steps_since_cleared_ += 1;
     if (time_ >= end || !parameters_.displacement || bodiesHaveMoved()) {
       clearBodies();
-    } else if (steps_since_cleared_ % kMostStepsUnsorted == 0 && !engine_->sortSand(kMostStepsUnsorted)) {
+    } else if (steps_since_cleared_ % kMostStepsUnsorted == 0 &&
+               !engine_->sortSand(kHopsPerStep * kMostStepsUnsorted)) {
       clearBodies();
     }
   }
@@ -376,7 +377,7 @@ class Simulator::Implementation {
   /// Moves sand out of the bodies where they are now.
   void clearBodies() {
     if (bodies_.empty()) return;
-    engine_->moveBodies(placed(), std::max(1, steps_since_cleared_));
+    engine_->moveBodies(placed(), kHopsPerStep * std::max(1, steps_since_cleared_));
     noteCleared();
   }
 
@@ -482,7 +483,10 @@ class Simulator::Implementation {
   /// at the step before, and is repeated in the rare case that speeds have grown by more.
   static constexpr double kHeadroom = 0.97;
   static constexpr double kLongestWayUncleared = 0.25;  // of a body between two castings of rays [cells]
-  static constexpr int kMostStepsUnsorted = 4;          // in as many, waves travel a cell
+  // Columns by which sand gives way to a body in the time of a step: most of what waits under a body that
+  // comes down fast is inside of it.
+  static constexpr int kHopsPerStep = 4;
+  static constexpr int kMostStepsUnsorted = 4;  // in as many, waves travel a cell
 
   SimulatorParameters parameters_;
   Grid grid_;

@@ -28,11 +28,11 @@ Map computedMap(int side, bool moving) {
   return map;
 }
 
-/// Boxes as large as the links of a robot, at random places of a square in the middle of the map, half of
-/// each in the sand, that swing to and fro and turn.
+/// Boxes as large as the links of a robot, at random places of a square in the middle of the map, that swing
+/// to and fro and turn: half of each in the sand, or all just above it.
 class Links {
  public:
-  Links(Simulator& simulator, int count, double square) : simulator_(simulator) {
+  Links(Simulator& simulator, int count, double square, bool in_sand) : simulator_(simulator) {
     std::mt19937 random(1);
     const auto uniform = [&](double low, double high) {
       return std::uniform_real_distribution<double>(low, high)(random);
@@ -41,11 +41,13 @@ class Links {
     const double middle = 0.5 * grid.columns * static_cast<double>(grid.spacing);
     for (int k = 0; k < count; ++k) {
       const double length = uniform(0.1, 0.4);
-      const TriangleMesh mesh = triangulate(Box{{length, uniform(0.1, 0.2), uniform(0.1, 0.2)}});
+      const double height = uniform(0.1, 0.2);
+      const TriangleMesh mesh = triangulate(Box{{length, uniform(0.1, 0.2), height}});
       simulator.addBody("link", std::make_shared<const DistanceField>(computeDistanceField(mesh, 0.01)));
       const double x = middle + uniform(-0.5, 0.5) * square;
       const double y = middle + uniform(-0.5, 0.5) * square;
-      places_.emplace_back(x, y, kSurface + uniform(-0.05, 0.05));
+      const double above = in_sand ? uniform(-0.05, 0.05) : 0.5 * height + grid.spacing;
+      places_.emplace_back(x, y, kSurface + above);
       headings_.push_back(uniform(-M_PI, M_PI));
     }
     tell(0.0);
@@ -77,7 +79,8 @@ void coupling(benchmark::State& state) {
   Simulator with = map.simulator();
   Simulator without = map.simulator();
   const double size = map.parameters.grid.size.x();
-  Links links(with, static_cast<int>(state.range(1)), 0.01 * static_cast<double>(state.range(2)) * size);
+  Links links(with, static_cast<int>(state.range(1)), 0.01 * static_cast<double>(state.range(2)) * size,
+              state.range(4) != 0);
   Timing coupled;
   Timing alone;
   const double steps = kFrame / kStep;
@@ -97,10 +100,11 @@ void coupling(benchmark::State& state) {
 
 void registerAll() {
   benchmark::RegisterBenchmark("coupling", coupling)
-      ->ArgNames({"side", "bodies", "square", "moving"})
-      ->ArgsProduct({{512}, {50}, {25, 90}, {0, 1}})
-      ->ArgsProduct({{1024}, {200}, {90}, {0, 1}})
-      ->Args({64, 2, 50, 1})
+      ->ArgNames({"side", "bodies", "square", "moving", "in_sand"})
+      ->ArgsProduct({{512}, {50}, {25, 90}, {0}, {0, 1}})
+      ->ArgsProduct({{512}, {50}, {25, 90}, {1}, {1}})
+      ->ArgsProduct({{1024}, {200}, {90}, {0, 1}, {1}})
+      ->Args({64, 2, 50, 1, 1})
       ->UseManualTime()
       ->Unit(benchmark::kMillisecond);
 }

@@ -268,6 +268,7 @@ struct ContactSpeed {
 
   SHALLOW_SAND_HOST_DEVICE float operator()(int i, int j) const {
     const long long at = step.index(i, j);
+    if (!contact.isCovered(at)) return 0.0f;
     const Sand load = columns.load(at);
     float speed = 0.0f;
     if (contact.length[at] > 0.0f || load.h > 0.0f) {

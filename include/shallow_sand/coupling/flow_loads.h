@@ -32,12 +32,13 @@ struct FlowLoads {
     const float margin = (fabsf(step.sand.level_x) + fabsf(step.sand.level_y)) + 0.01f * step.sand.spacing;
     return columns.hidden.depth[at] > 0.0f || highest + margin > contact.top[at];
   }
+  /// Of the highest sand.
   SHALLOW_SAND_HOST_DEVICE float surface(int i, int j) const {
     if (!onGrid(i, j)) return -1e30f;
     const long long at = step.index(i, j);
     const float visible_surface = columns.visible_bed[at] + columns.visible.depth[at];
-    return hangs(i, j) ? maximum(visible_surface, contact.top[at] + columns.hidden.depth[at])
-                       : visible_surface;
+    const bool has_load = hangs(i, j) && columns.hidden.depth[at] > 0.0f;
+    return has_load ? maximum(visible_surface, contact.top[at] + columns.hidden.depth[at]) : visible_surface;
   }
   /// Whether anything may flow to or from a hanging load here.
   SHALLOW_SAND_HOST_DEVICE bool isInvolved(int i, int j) const {

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <type_traits>
 #include <vector>
@@ -16,7 +17,7 @@
 
 namespace shallow_sand {
 
-/// Memory for a field, from a cache line on.
+/// Memory for a field, from a cache line on; all bytes are 0.
 class FieldMemory {
  public:
   /// @throws std::bad_alloc
@@ -42,7 +43,7 @@ class HostExecutor {
   class Memory {
    public:
     explicit Memory(std::size_t count, T value = T{}) : size_(count), memory_((count + kMargin) * sizeof(T)) {
-      std::uninitialized_fill_n(data(), count + kMargin, value);
+      if (!isZero(value)) std::uninitialized_fill_n(data(), count + kMargin, value);
     }
     std::size_t size() const { return size_; }
     T* data() { return static_cast<T*>(memory_.begin()); }
@@ -51,7 +52,11 @@ class HostExecutor {
     void download(T* target, std::size_t count) const { std::copy_n(data(), count, target); }
 
    private:
-    static_assert(std::is_trivially_destructible<T>::value, "elements are not destroyed one by one");
+    static_assert(std::is_trivially_copyable<T>::value, "elements are made of bytes that are 0");
+    static bool isZero(const T& value) {
+      const unsigned char zeros[sizeof(T)] = {};
+      return std::memcmp(&value, zeros, sizeof(T)) == 0;
+    }
     static constexpr std::size_t kMargin = 32;
     std::size_t size_;
     FieldMemory memory_;
@@ -62,17 +67,20 @@ class HostExecutor {
   /// Calls function(i, j) once for every cell of the window.
   template <class Function>
   void forEachCell(const Window& window, const Function& function) const {
-#pragma omp parallel for num_threads(threads_) schedule(static) if (isWorthThreads(window))
-    for (int j = window.row_begin; j < window.row_end; ++j) {
+    forEachRow(window, [&](int j) {
 #pragma omp simd
       for (int i = window.column_begin; i < window.column_end; ++i) function(i, j);
-    }
+    });
   }
 
   /// Calls function(part) once for each of `count` uneven parts of the work on a window.
   template <class Function>
   void forEachPart(const Window& window, int count, const Function& function) const {
-#pragma omp parallel for num_threads(threads_) schedule(dynamic) if (isWorthThreads(window))
+    if (threads_ == 1 || window.cells() < 512) {
+      for (int part = 0; part < count; ++part) function(part);
+      return;
+    }
+#pragma omp parallel for num_threads(threads_) schedule(dynamic)
     for (int part = 0; part < count; ++part) function(part);
   }
 
@@ -83,12 +91,11 @@ class HostExecutor {
   template <class Value>
   Cells cellsWith(const Window& window, const Value& value) const {
     Cells cells(window);
-#pragma omp parallel for num_threads(threads_) schedule(static) if (isWorthThreads(window))
-    for (int j = window.row_begin; j < window.row_end; ++j) {
+    forEachRow(window, [&](int j) {
       for (int i = window.column_begin; i < window.column_end; ++i) {
         if (value(i, j) > 0.0f) cells.set(i, j);
       }
-    }
+    });
     return cells;
   }
 
@@ -117,20 +124,19 @@ class HostExecutor {
   /// Calls function(i, j) once for each of the cells.
   template <class Function>
   void forEachCell(const Cells& cells, const Function& function) const {
-    const Window& window = cells.window();
-#pragma omp parallel for num_threads(threads_) schedule(static) if (isWorthThreads(window))
-    for (int j = window.row_begin; j < window.row_end; ++j) cells.forEachInRow(j, function);
+    forEachRow(cells.window(), [&](int j) { cells.forEachInRow(j, function); });
   }
 
   /// Largest function(i, j) over the window, at least 0.
   template <class Function>
   float maximumOverCells(const Window& window, const Function& function) const {
-    float result = 0.0f;
-#pragma omp parallel for num_threads(threads_) schedule(static) reduction(max : result)
-    for (int j = window.row_begin; j < window.row_end; ++j) {
+    std::vector<float> largest(window.empty() ? 0 : window.rows(), 0.0f);
+    forEachRow(window, [&](int j) {
+      float result = 0.0f;
       for (int i = window.column_begin; i < window.column_end; ++i) result = maximum(result, function(i, j));
-    }
-    return result;
+      largest[j - window.row_begin] = result;
+    });
+    return largest.empty() ? 0.0f : *std::max_element(largest.begin(), largest.end());
   }
 
   /// Parts of the window that hold all cells for which function(i, j) is above 0, and few others.
@@ -193,9 +199,16 @@ class HostExecutor {
     return false;
   }
 
-  /// To wake a thread takes as long as some hundred cells.
-  static bool isWorthThreads(const Window& window) {
-    return window.rows() > 1 && window.columns() * window.rows() >= 512;
+  /// Calls function(j) once for every row, on threads if that is worth it: to wake one takes as long as some
+  /// thousand cells. A team of one thread is no loop, either: OpenMP ends each with a call of the system.
+  template <class Function>
+  void forEachRow(const Window& window, const Function& function) const {
+    if (threads_ == 1 || window.rows() <= 1 || window.cells() < 4096) {
+      for (int j = window.row_begin; j < window.row_end; ++j) function(j);
+      return;
+    }
+#pragma omp parallel for num_threads(threads_) schedule(static)
+    for (int j = window.row_begin; j < window.row_end; ++j) function(j);
   }
 
   struct alignas(64) Share {  // a cache line of its own
