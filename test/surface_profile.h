@@ -11,26 +11,15 @@
 
 namespace shallow_sand {
 
-/// Elevation of the top of the sand in a column, be it on the bed or on a body. [m]
-inline double visibleSurface(const Fields& fields, std::size_t cell) {
-  constexpr float kDust = 0.001f;  // on a body is no surface of sand [m]
-  const bool dusty = fields.hasLoad(cell) && fields.load[cell] < kDust;
-  return static_cast<double>(dusty ? fields.bed[cell] + fields.depth[cell] : fields.surface(cell));
-}
-
-/// All sand of a column: under bodies and on them. [m]
-inline double sandOfColumn(const Fields& fields, std::size_t cell) {
-  const double load = fields.load.empty() ? 0.0 : static_cast<double>(fields.load[cell]);
-  return static_cast<double>(fields.depth[cell]) + load;
-}
-
 /// Elevation of the sand's surface, interpolated between the centres of four cells. [m]
 inline double surfaceAt(const Grid& grid, const Fields& fields, const Eigen::Vector2d& position) {
   const double x = (position.x() - grid.x(0)) / grid.spacing;
   const double y = (position.y() - grid.y(0)) / grid.spacing;
   const int i = std::clamp(static_cast<int>(std::floor(x)), 0, grid.columns - 2);
   const int j = std::clamp(static_cast<int>(std::floor(y)), 0, grid.rows - 2);
-  const auto surface = [&](int column, int row) { return visibleSurface(fields, grid.index(column, row)); };
+  const auto surface = [&](int column, int row) {
+    return static_cast<double>(fields.surface(grid.index(column, row)));
+  };
   const double s = x - i;
   const double t = y - j;
   return (1.0 - t) * ((1.0 - s) * surface(i, j) + s * surface(i + 1, j)) +

@@ -186,13 +186,13 @@ class Simulator::Implementation {
     edit.validate();
     const LocalRegion region = localRegion(edit.region, grid_);
     if (windowOf(region, grid_).empty()) requireOnGrid("center", edit.region.center);
-    if (!bodies_.empty()) {
+    if (!bodies_.empty() && parameters_.displacement) {
       // A body that hangs high above the sand catches what comes down now.
       engine_->expectSand(region);
       clearBodies();
-      // Sand may have come to lie where a body is.
-      placed_anew_ = true;
     }
+    // Sand may have come to lie where a body is.
+    placed_anew_ = placed_anew_ || !bodies_.empty();
     return engine_->edit(region, edit.operation, static_cast<float>(edit.value));
   }
 

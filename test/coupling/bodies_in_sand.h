@@ -117,7 +117,7 @@ double volumeWhere(const Grid& grid, const Fields& fields, Chosen&& chosen) {
   double depth = 0.0;
   for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i) {
-      if (chosen(grid.x(i), grid.y(j))) depth += sandOfColumn(fields, grid.index(i, j));
+      if (chosen(grid.x(i), grid.y(j))) depth += fields.allDepth(grid.index(i, j));
     }
   }
   return depth * grid.cellArea();
@@ -144,9 +144,8 @@ inline void expectSlopeAtRest(double slope, double friction_angle) {
 
 inline void expectSoundSand(const Fields& fields) {
   for (std::size_t k = 0; k < fields.depth.size(); ++k) {
-    ASSERT_TRUE(std::isfinite(sandOfColumn(fields, k)) && sandOfColumn(fields, k) >= 0.0 &&
-                fields.depth[k] >= 0.0f)
-        << "depth " << sandOfColumn(fields, k) << " in cell " << k;
+    ASSERT_TRUE(std::isfinite(fields.allDepth(k)) && fields.allDepth(k) >= 0.0 && fields.depth[k] >= 0.0f)
+        << "depth " << fields.allDepth(k) << " in cell " << k;
     ASSERT_TRUE(std::isfinite(fields.momentum_x[k]) && std::isfinite(fields.momentum_y[k])) << "cell " << k;
   }
 }

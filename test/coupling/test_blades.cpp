@@ -99,7 +99,7 @@ Range trenchDepth(const Blade& blade, const Grid& grid, const Fields& fields, do
   for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i) {
       if (onTrenchFloor(blade, {grid.x(i), grid.y(j)}, travelled))
-        trench.add(kSurface - visibleSurface(fields, grid.index(i, j)));
+        trench.add(kSurface - fields.surface(grid.index(i, j)));
     }
   }
   return trench;
@@ -114,7 +114,7 @@ double changeBehind(const Blade& blade, const Scene& scene, const Grid& grid, co
       const bool behind = place.x() < -0.5 * thicknessOf(blade) - slump();
       if (!behind || std::abs(place.y()) > 0.5 * kWidth) continue;
       const std::size_t k = grid.index(i, j);
-      most = std::max(most, std::abs(sandOfColumn(fields, k) - static_cast<double>(scene.depth[k])));
+      most = std::max(most, std::abs(fields.allDepth(k) - static_cast<double>(scene.depth[k])));
     }
   }
   return most;

@@ -150,7 +150,7 @@ TEST(Bucket, DigsAndLiftsWhatItDug) {
   const Fields lifted = simulator.fields();
   double above_bed = 0.0;
   for (std::size_t k = 0; k < grid.cells(); ++k)
-    above_bed += sandOfColumn(lifted, k) - static_cast<double>(lifted.depth[k]);
+    above_bed += lifted.allDepth(k) - static_cast<double>(lifted.depth[k]);
   above_bed *= grid.cellArea();
   const double mouthful = kTravel * kInside * kCut;
   std::printf("lifted %.5f m^3; its floor passed under %.5f\n", above_bed, mouthful);

@@ -31,7 +31,7 @@ Simulator buried(const Scene& scene, double surface) {
 double largestStep(const Grid& grid, const Fields& fields, double surface) {
   double largest = 0.0;
   for (std::size_t k = 0; k < grid.cells(); ++k)
-    largest = std::max(largest, std::abs(visibleSurface(fields, k) - surface));
+    largest = std::max(largest, std::abs(fields.surface(k) - surface));
   return largest;
 }
 

@@ -39,7 +39,7 @@ double meanRise(const Grid& grid, const Fields& fields, double nearest, double f
     for (int i = 0; i < grid.columns; ++i) {
       const double r = std::hypot(grid.x(i) - kMiddle, grid.y(j) - kMiddle);
       if (r < nearest || r >= farthest) continue;
-      sum += visibleSurface(fields, grid.index(i, j)) - kSurface;
+      sum += fields.surface(grid.index(i, j)) - kSurface;
       count += 1;
     }
   }
@@ -51,8 +51,8 @@ double asymmetry(const Grid& grid, const Fields& fields) {
   double largest = 0.0;
   for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i) {
-      const double own = visibleSurface(fields, grid.index(i, j));
-      const double turned_by_quarter = visibleSurface(fields, grid.index(grid.columns - 1 - j, i));
+      const double own = fields.surface(grid.index(i, j));
+      const double turned_by_quarter = fields.surface(grid.index(grid.columns - 1 - j, i));
       largest = std::max(largest, std::abs(own - turned_by_quarter));
     }
   }

@@ -69,7 +69,7 @@ TEST(ManyBodies, BodyLargerThanTheMapLosesNoSand) {
   EXPECT_LT(simulator.ledger().error(), 1e-6);
   EXPECT_EQ(simulator.bodyOverlap(), 0.0);
   for (std::size_t k = 0; k < fields.depth.size(); ++k)
-    ASSERT_NEAR(visibleSurface(fields, k), kSurface, 1e-5) << "cell " << k;
+    ASSERT_NEAR(fields.surface(k), kSurface, 1e-5) << "cell " << k;
 }
 
 /// A wall as broad as the map pushes all that is above the cut over the open edge.
@@ -89,7 +89,7 @@ TEST(ManyBodies, BodyBroaderThanTheMapPushesSandOverAnOpenEdge) {
   const double left_over = kSurface - kCut;
   double highest = 0.0;
   for (std::size_t k = 0; k < fields.depth.size(); ++k)
-    highest = std::max(highest, visibleSurface(fields, k) - left_over);
+    highest = std::max(highest, fields.surface(k) - left_over);
   std::printf("overlap at most %.1e m^3, %.4f m^3 went over the edge, at most %.1e m above the cut is left\n",
               most_overlap, simulator.ledger().left, highest);
   // When it stops, what it has not yet pushed over the edge stands before it.

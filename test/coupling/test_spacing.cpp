@@ -30,7 +30,7 @@ Volumes volumesOf(const Grid& grid, const Fields& fields) {
   const double front = kStart + kTravel + 0.5 * kThickness;
   for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i) {
-      const double rise = visibleSurface(fields, grid.index(i, j)) - kSurface;
+      const double rise = fields.surface(grid.index(i, j)) - kSurface;
       if (rise < 0.0) volumes.trench -= rise * grid.cellArea();
       if (rise > 0.0) (grid.x(i) > front ? volumes.berm : volumes.aside) += rise * grid.cellArea();
     }

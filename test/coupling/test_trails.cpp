@@ -79,7 +79,7 @@ Section sectionOf(const Dragged& dragged, const Grid& grid, const Fields& fields
     if (std::abs(sideways) > kHalfWidth) continue;
     const std::size_t k = grid.index(middle, j);
     section.under.push_back(kSurface - static_cast<double>(fields.bed[k] + fields.depth[k]));
-    section.trail.push_back(kSurface - visibleSurface(fields, grid.index(behind, j)));
+    section.trail.push_back(kSurface - fields.surface(grid.index(behind, j)));
     section.silhouette.push_back(dragged.silhouette(sideways));
   }
   return section;

@@ -24,8 +24,12 @@ struct Fields {
     return hasLoad(cell) ? load_elevation[cell] + load[cell] : bed[cell] + depth[cell];
   }
   /// Depth of all sand of a cell. [m]
-  float allDepth(std::size_t cell) const { return hasLoad(cell) ? depth[cell] + load[cell] : depth[cell]; }
-  bool hasLoad(std::size_t cell) const { return !load.empty() && load[cell] > 0.0f; }
+  float allDepth(std::size_t cell) const { return load.empty() ? depth[cell] : depth[cell] + load[cell]; }
+  /// Whether so much lies on a body that one sees it: grains that hang on to a link are no surface of sand.
+  bool hasLoad(std::size_t cell) const {
+    constexpr float kDust = 0.001f;  // [m]
+    return !load.empty() && load[cell] >= kDust;
+  }
 };
 
 /// Material that varies over the map: each list is empty (then Material holds everywhere) or has one value a

@@ -32,7 +32,7 @@ class Engine {
   /// Sand has moved: what has come under bodies, or has filled the room there, is told from what has not.
   /// Returns false if it has come near a body that was far above it: then bodies must be placed again.
   virtual bool sortSand(int hops) = 0;
-  /// Sand will fall on this region before bodies are placed the time after the next.
+  /// Sand will fall on this region: bodies over it are not left out the next time that bodies are placed.
   virtual void expectSand(const LocalRegion& region) = 0;
   /// Computes a step of dt [s]. Returns the largest speed that it had to follow (Eq. 14, 34), that of bodies
   /// in the sand included [m/s]: if dt was too long for it, attempt again.
