@@ -58,9 +58,7 @@ float TiledStepper::attempt(const StepArguments& arguments, const std::vector<Wi
   executor_.forEachTask(static_cast<int>(rectangles.size()), [&](int task, int thread) {
     const Window& cells = rectangles[task];
     const Window reached = cells.grown(Tiles::kReach, grid_);
-    const bool with_bodies = std::any_of(
-        bodies.begin(), bodies.end(), [&](const Window& window) { return !reached.overlap(window).empty(); });
-    withStep(arguments, with_bodies, options_.with_slopes, [&](const auto& step) {
+    withStep(arguments, reached.overlapsAny(bodies), options_.with_slopes, [&](const auto& step) {
       RowWalker<std::decay_t<decltype(step)>> walker(step, out, cells, tiles_, scratch_[thread].data());
       walk(walker, options_.instructions);
     });

@@ -3,11 +3,11 @@
 
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 #include <string>
 #include <variant>
 
 #include "shallow_sand/scene/simulation.h"
+#include "temporary_folder.h"
 
 namespace shallow_sand {
 namespace {
@@ -16,14 +16,10 @@ namespace {
 class SceneMeshes : public ::testing::Test {
  protected:
   SceneMeshes() {
-    std::string path = "/tmp/shallow_sand_XXXXXX";
-    if (mkdtemp(&path[0]) == nullptr) throw std::runtime_error("no temporary folder at " + path);
-    folder_ = path;
     setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
     // A tetrahedron that faces outwards.
     write("corner.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
   }
-  ~SceneMeshes() override { std::filesystem::remove_all(folder_); }
 
   void write(const std::string& name, const std::string& content) const {
     std::ofstream(folder_ / name) << content;
@@ -42,7 +38,8 @@ class SceneMeshes : public ::testing::Test {
     }
     return "no error";
   }
-  std::filesystem::path folder_;
+  const TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path();
 };
 
 /// Positive only when triangles face outwards.

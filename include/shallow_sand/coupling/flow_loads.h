@@ -188,9 +188,7 @@ struct FlowLoads {
 struct HangingCover {
   FlowLoads flow;
 
-  SHALLOW_SAND_HOST_DEVICE float operator()(int i, int j) const {
-    return flow.columns.cover[flow.step.index(i, j)] == Cover::hanging ? 1.0f : 0.0f;
-  }
+  SHALLOW_SAND_HOST_DEVICE float operator()(int i, int j) const { return flow.hangs(i, j) ? 1.0f : 0.0f; }
 };
 
 /// Above 0 where FlowLoads changed anything.

@@ -25,6 +25,16 @@ struct NoSand {
   }
 };
 
+/// By how much the surfaces of a column's neighbours are lower than friction holds. [m]
+struct Drops {
+  float west;
+  float east;
+  float south;
+  float north;
+
+  SHALLOW_SAND_HOST_DEVICE float sum() const { return (west + east) + (south + north); }
+};
+
 /// Sand that a body pushed out of one column stands on the next as a tower, for the body's side moves on by
 /// whole columns. Let fall, it would gain speed that sand before a real blade does not have, and run out far
 /// below the angle of repose. So pushed sand first goes down from column to column, as far as friction cannot
@@ -52,6 +62,12 @@ struct PushedSand {
     const float held = repose_rise == nullptr ? sand.uniform.repose_rise : repose_rise[at];
     return maximum((surface(at) - surface(there)) + level_rise - held, 0.0f);
   }
+  /// A part of the drops to all neighbours.
+  SHALLOW_SAND_HOST_DEVICE Drops drops(int i, int j, float part) const {
+    const long long at = index(i, j);
+    return {part * drop(at, i - 1, j, -sand.level_x), part * drop(at, i + 1, j, sand.level_x),
+            part * drop(at, i, j - 1, -sand.level_y), part * drop(at, i, j + 1, sand.level_y)};
+  }
 };
 
 /// How much of a column's pushed sand goes to its neighbours: it and those that take from it come to lie
@@ -63,15 +79,11 @@ struct DividePushedSand {
     const long long at = pushed.index(i, j);
     const float depth = pushed.from.depth[at];
     if (!(depth > 0.0f)) return;
-    const SandConstants& sand = pushed.sand;
-    const float west = pushed.drop(at, i - 1, j, -sand.level_x);
-    const float east = pushed.drop(at, i + 1, j, sand.level_x);
-    const float south = pushed.drop(at, i, j - 1, -sand.level_y);
-    const float north = pushed.drop(at, i, j + 1, sand.level_y);
-    const float takers = (west > 0.0f ? 1.0f : 0.0f) + (east > 0.0f ? 1.0f : 0.0f) +
-                         (south > 0.0f ? 1.0f : 0.0f) + (north > 0.0f ? 1.0f : 0.0f);
+    const Drops drops = pushed.drops(i, j, 1.0f);
+    const float takers = (drops.west > 0.0f ? 1.0f : 0.0f) + (drops.east > 0.0f ? 1.0f : 0.0f) +
+                         (drops.south > 0.0f ? 1.0f : 0.0f) + (drops.north > 0.0f ? 1.0f : 0.0f);
     const float level = 1.0f / (takers + 1.0f);
-    const float sum = (west + east) + (south + north);
+    const float sum = drops.sum();
     pushed.part[at] = sum > 0.0f ? level * minimum(1.0f, depth / maximum(level * sum, 1e-30f)) : 0.0f;
   }
 };
@@ -98,12 +110,7 @@ struct LowerPushedSand {
     if (!(own.h > 0.0f)) return {};
     const float part = pushed.part[at];
     if (!(part > 0.0f)) return own;
-    const SandConstants& sand = pushed.sand;
-    const float west = part * pushed.drop(at, i - 1, j, -sand.level_x);
-    const float east = part * pushed.drop(at, i + 1, j, sand.level_x);
-    const float south = part * pushed.drop(at, i, j - 1, -sand.level_y);
-    const float north = part * pushed.drop(at, i, j + 1, sand.level_y);
-    const float stays = maximum(own.h - ((west + east) + (south + north)), 0.0f) / own.h;
+    const float stays = maximum(own.h - pushed.drops(i, j, part).sum(), 0.0f) / own.h;
     return {stays * own.h, stays * own.hu, stays * own.hv};
   }
 

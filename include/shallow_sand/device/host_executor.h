@@ -111,7 +111,18 @@ class HostExecutor {
 
   Cells grown(const Cells& cells) const { return cells.grown(); }
 
-  /// Whether value(i, j) is above 0 for any of the cells.
+  /// Whether value(i, j) is above 0 for any cell of the window.
+  template <class Function>
+  static bool holdsAny(const Window& window, const Function& function) {
+    for (int j = window.row_begin; j < window.row_end; ++j) {
+      for (int i = window.column_begin; i < window.column_end; ++i) {
+        if (function(i, j) > 0.0f) return true;
+      }
+    }
+    return false;
+  }
+
+  /// Whether it is for any of the cells.
   template <class Value>
   bool holdsAny(const Cells& cells, const Value& value) const {
     bool any = false;
@@ -189,16 +200,6 @@ class HostExecutor {
   int threads() const { return threads_; }
 
  private:
-  template <class Function>
-  static bool holdsAny(const Window& window, const Function& function) {
-    for (int j = window.row_begin; j < window.row_end; ++j) {
-      for (int i = window.column_begin; i < window.column_end; ++i) {
-        if (function(i, j) > 0.0f) return true;
-      }
-    }
-    return false;
-  }
-
   /// Calls function(j) once for every row, on threads if that is worth it: to wake one takes as long as some
   /// thousand cells. A team of one thread is no loop, either: OpenMP ends each with a call of the system.
   template <class Function>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "shallow_sand/core/grid.h"
 
@@ -41,6 +42,12 @@ struct Window {
   }
   std::size_t cells() const { return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()); }
   bool empty() const { return columns() <= 0 || rows() <= 0; }
+
+  /// Whether any cell is in one of the windows, too.
+  bool overlapsAny(const std::vector<Window>& windows) const {
+    return std::any_of(windows.begin(), windows.end(),
+                       [&](const Window& window) { return !overlap(window).empty(); });
+  }
 
   /// The smallest rectangle that holds both.
   Window united(const Window& other) const {

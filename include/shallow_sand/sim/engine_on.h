@@ -74,11 +74,8 @@ class EngineOn : public Engine {
     // Cells that a body has left are looked at once more, to be cleared.
     touched.insert(touched.end(), windows_.begin(), windows_.end());
     forEachBins(bodies, withoutOverlap(touched), [&](const BodyBins& bins) {
-      const bool cast = std::any_of(moved.begin(), moved.end(), [&](const Window& window) {
-        return !window.overlap(bins.window).empty();
-      });
       if (!displacement_) return drag(bins);
-      if (cast) return makeWay(bins, hops, true);
+      if (bins.window.overlapsAny(moved)) return makeWay(bins, hops, true);
       sortSand(bins.window, hops);
     });
     watch(now, moved);
@@ -274,9 +271,7 @@ class EngineOn : public Engine {
     std::vector<Watched> watched(now.size());
     for (std::size_t k = 0; k < now.size(); ++k) {
       const auto was = std::find(windows_.begin(), windows_.end(), now[k]);
-      const bool stays = std::none_of(moved.begin(), moved.end(),
-                                      [&](const Window& window) { return !window.overlap(now[k]).empty(); });
-      if (stays && was != windows_.end()) watched[k] = watched_[was - windows_.begin()];
+      if (!now[k].overlapsAny(moved) && was != windows_.end()) watched[k] = watched_[was - windows_.begin()];
     }
     windows_ = now;
     watched_ = std::move(watched);
@@ -288,8 +283,8 @@ class EngineOn : public Engine {
     if (here != windows_.end()) {
       Watched& watched = watched_[here - windows_.begin()];
       const SandWithoutRoom rest{contact(), columns(), grid_.columns};
-      watched.rests = !stepper_.isDue(window) && !watched.flows &&
-                      (watched.rests || executor_.partsWith(window, rest).empty());
+      watched.rests =
+          !stepper_.isDue(window) && !watched.flows && (watched.rests || !executor_.holdsAny(window, rest));
       if (watched.rests) return;
     }
     makeWay(BodyBins{nullptr, nullptr, nullptr, window, 0}, hops, false);
@@ -305,13 +300,12 @@ class EngineOn : public Engine {
   }
   bool isNearSand(const PlacedBody& body) {
     const Window around = body.window.grown(1, grid_);
-    const auto falls = [&](const Window& window) { return !around.overlap(window).empty(); };
-    const bool sand_falls = std::any_of(expected_.begin(), expected_.end(), falls) ||
-                            std::any_of(pours_.begin(), pours_.end(),
-                                        [&](const PourOnBackend& pour) { return falls(pour.change.window); });
-    if (sand_falls) return true;
+    const bool poured_on = std::any_of(pours_.begin(), pours_.end(), [&](const PourOnBackend& pour) {
+      return !around.overlap(pour.change.window).empty();
+    });
+    if (poured_on || around.overlapsAny(expected_)) return true;
     const float reach = body.view.low.z - kNearSand * grid_.spacing;
-    return executor_.maximumOverCells(around, SandAbove{columns(), reach, sand_.film, grid_.columns}) > 0.0f;
+    return executor_.holdsAny(around, SandAbove{columns(), reach, sand_.film, grid_.columns});
   }
 
   /// Where bodies are, or were the last time, that do not rest.
@@ -336,7 +330,7 @@ class EngineOn : public Engine {
     for (int hop = 0; hop < hops; ++hop) {
       displace(bins, cast && hop == 0);
       const SandWithoutRoom rest{contact(), columns(), grid_.columns};
-      if (hop + 1 < hops && executor_.partsWith(bins.window, rest).empty()) return;
+      if (hop + 1 < hops && !executor_.holdsAny(bins.window, rest)) return;
     }
   }
 
