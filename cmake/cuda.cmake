@@ -2,6 +2,9 @@
 set(SHALLOW_SAND_CUDA AUTO CACHE STRING "CUDA backend: AUTO (if nvcc is found), ON or OFF")
 set_property(CACHE SHALLOW_SAND_CUDA PROPERTY STRINGS AUTO ON OFF)
 
+set(SHALLOW_SAND_CUDA_ARCHITECTURES 75 80 86 89 90 CACHE STRING
+  "GPUs to compile for, by compute capability without its dot; the newest is embedded as PTX, too")
+
 set(SHALLOW_SAND_WITH_CUDA FALSE)
 if(SHALLOW_SAND_CUDA STREQUAL "OFF")
   message(STATUS "CUDA backend: off (SHALLOW_SAND_CUDA=OFF)")
@@ -31,7 +34,7 @@ endif()
 # newest is embedded as PTX, too, for GPUs that are newer still.
 execute_process(COMMAND ${SHALLOW_SAND_NVCC} --list-gpu-code OUTPUT_VARIABLE known_codes ERROR_QUIET)
 set(gencode "")
-foreach(architecture 75 80 86 89 90)
+foreach(architecture ${SHALLOW_SAND_CUDA_ARCHITECTURES})
   if(known_codes MATCHES "sm_${architecture}" OR NOT known_codes)
     string(APPEND gencode " -gencode=arch=compute_${architecture},code=sm_${architecture}")
     set(newest ${architecture})

@@ -19,6 +19,11 @@ void forEachBin(const PlacedBody& body, const Window& window, int across, const 
 
 }  // namespace
 
+float reachOf(const PlacedBody& body, const Grid& grid) {
+  constexpr float kNearSand = 4.0f;  // [cells]
+  return body.view.low.z - kNearSand * grid.spacing;
+}
+
 std::vector<Window> withoutOverlap(std::vector<Window> windows) {
   std::vector<Window> apart;
   while (!windows.empty()) {

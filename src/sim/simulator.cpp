@@ -68,20 +68,27 @@ struct ChosenBackend {
   std::string notice;
 };
 
-ChosenBackend chooseBackend(Backend wanted, int threads) {
+ChosenBackend onCpu(int threads, const std::string& why) {
   threads = threads > 0 ? threads : omp_get_max_threads();
-  const std::string on_cpu = "running on the CPU with " + std::to_string(threads) + " threads";
-  if (wanted == Backend::cpu) return {Backend::cpu, threads, on_cpu};
+  return {Backend::cpu, threads, why + "running on the CPU with " + std::to_string(threads) + " threads"};
+}
+
+/// The CPU, if that is an answer to what was asked for.
+ChosenBackend withoutGpu(Backend wanted, int threads, const std::string& reason) {
+  if (wanted == Backend::cuda)
+    throw InvalidParameter("backend", "cuda, but " + reason, "auto or cpu on this machine");
+  return onCpu(threads, "no usable GPU (" + reason + "): ");
+}
+
+ChosenBackend chooseBackend(Backend wanted, int threads) {
+  if (wanted == Backend::cpu) return onCpu(threads, "");
 #ifdef SHALLOW_SAND_WITH_CUDA
   const std::string reason = cudaUnavailable();
   if (reason.empty()) return {Backend::cuda, 1, "running on the GPU: " + cudaDeviceName()};
 #else
   const std::string reason = "this build has no CUDA (see SHALLOW_SAND_CUDA in the README)";
 #endif
-  if (wanted == Backend::cuda) {
-    throw InvalidParameter("backend", "cuda, but " + reason, "auto or cpu on this machine");
-  }
-  return {Backend::cpu, threads, "no usable GPU (" + reason + "): " + on_cpu};
+  return withoutGpu(wanted, threads, reason);
 }
 
 }  // namespace
@@ -126,10 +133,10 @@ class Simulator::Implementation {
     std::shared_ptr<const DistanceField> field;
     Motion motion;
     double reach;  // of its farthest point from its origin [m]
-    // Where and when sand made way for it the last time; the time is infinite if it never did.
-    Eigen::Isometry3d cleared_at = Eigen::Isometry3d::Identity();
-    double cleared_time = std::numeric_limits<double>::infinity();
-    bool rests = false;  // it stood there when sand made way the time before, too
+    // Where and when it was placed the last time; the time is infinite if it never was.
+    Eigen::Isometry3d placed_at = Eigen::Isometry3d::Identity();
+    double placed_time = std::numeric_limits<double>::infinity();
+    int still = 0;  // placements before that in which it was just there, without a gap
   };
 
   Implementation(const SimulatorParameters& parameters, std::vector<float> bed, std::vector<float> depth,
@@ -155,7 +162,13 @@ class Simulator::Implementation {
     start.displacement = parameters_.displacement;
     start.with_slopes = parameters_.solver.reconstruction == Reconstruction::minmod;
 #ifdef SHALLOW_SAND_WITH_CUDA
-    if (chosen_.backend == Backend::cuda) engine_ = makeCudaEngine(start);
+    if (chosen_.backend == Backend::cuda) {
+      try {
+        engine_ = makeCudaEngine(start);
+      } catch (const std::runtime_error& reason) {
+        chosen_ = withoutGpu(parameters_.backend, parameters_.threads, reason.what());
+      }
+    }
 #endif
     if (!engine_) {
       engine_ = makeHostEngine(start, chosen_.threads, parameters_.sleeping,
@@ -169,8 +182,8 @@ class Simulator::Implementation {
     Region region;
     region.center = pour.position;
     region.radius = pour.radius;
-    engine_->addPour(localRegion(region, grid_));
-    pours_.push_back(pour);
+    finish();
+    engine_->addPour(localRegion(region, grid_), {pour.start, pour.stop, pour.rate});
   }
 
   void requireOnGrid(const char* key, const Eigen::Vector2d& position) const {
@@ -184,21 +197,23 @@ class Simulator::Implementation {
 
   double edit(const Edit& edit) {
     edit.validate();
+    finish();
     const LocalRegion region = localRegion(edit.region, grid_);
     if (windowOf(region, grid_).empty()) requireOnGrid("center", edit.region.center);
     if (!bodies_.empty() && parameters_.displacement) {
       // A body that hangs high above the sand catches what comes down now.
       engine_->expectSand(region);
-      clearBodies();
+      placeBodies();
     }
     // Sand may have come to lie where a body is.
     placed_anew_ = placed_anew_ || !bodies_.empty();
     return engine_->edit(region, edit.operation, static_cast<float>(edit.value));
   }
 
-  Snapshot snapshot() const {
+  /// What only looks, too, has to wait for a run that was begun.
+  Snapshot snapshot() {
     Snapshot snapshot;
-    snapshot.fields = engine_->fields();
+    snapshot.fields = fields();
     snapshot.contacts = engine_->contacts();
     snapshot.bodies_cleared = !placed_anew_;
     snapshot.time = time_;
@@ -209,6 +224,7 @@ class Simulator::Implementation {
   }
 
   void restore(const Snapshot& snapshot) {
+    finish();
     requireFit(snapshot);
     Fields fields = snapshot.fields;
     if (!bodies_.empty() && fields.load.empty()) {
@@ -225,7 +241,11 @@ class Simulator::Implementation {
     engine_->restore(fields, snapshot.contacts);
     placed_anew_ = !snapshot.bodies_cleared;
     time_ = snapshot.time;
-    noteCleared();
+    for (Body& body : bodies_) {
+      body.still = 0;
+      if (!body.motion.empty()) notePlaced(body, body.motion.poseAt(time_));
+    }
+    steps_since_placed_ = 0;
     trial_ = snapshot.next_step;
     progress_ = snapshot.progress;
     start_volume_ = snapshot.ledger.start;
@@ -273,6 +293,7 @@ class Simulator::Implementation {
   }
 
   void addBody(const std::string& name, std::shared_ptr<const DistanceField> field) {
+    finish();
     engine_->addBody(*field);
     const Eigen::Vector3d far_corner(field->samples[0] - 1, field->samples[1] - 1, field->samples[2] - 1);
     const Eigen::Vector3d opposite = field->origin + field->spacing * far_corner;
@@ -286,14 +307,16 @@ class Simulator::Implementation {
   }
 
   void placeBody(std::size_t body, const Eigen::Isometry3d& pose) {
+    finish();
     Motion motion;
     appendTo(motion, present(body).name, time_, pose);
     present(body).motion = motion;
-    present(body).cleared_time = std::numeric_limits<double>::infinity();
+    present(body).placed_time = std::numeric_limits<double>::infinity();
     placed_anew_ = true;
   }
 
   void removeBody(std::size_t body) {
+    finish();
     present(body).motion = Motion();
     present(body).field.reset();
     engine_->removeBody(body);
@@ -315,141 +338,195 @@ class Simulator::Implementation {
     moved.motion.forgetBefore(time_);
   }
 
-  void advance(double duration) {
-    if (!(duration >= 0.0) || !std::isfinite(duration)) {
-      throw InvalidParameter("duration", std::to_string(duration), "seconds, finite and not negative");
-    }
-    advanceTo(time_ + duration);
-  }
-
-  void advanceTo(double end) {
+  void beginAdvanceTo(double end) {
+    finish();
     if (!(end >= time_) || !std::isfinite(end)) {
       throw InvalidParameter("time", std::to_string(end),
                              "finite seconds, not before " + std::to_string(time_) + " s, which it is");
     }
-    if (placed_anew_) clearBodies();
+    if (placed_anew_) placeBodies();
     placed_anew_ = false;
-    while (time_ < end) substep(end);
+    end_ = end;
+    if (time_ < end_) startRun();
   }
 
-  void substep(double end) {
-    double step = stepWithin(end);
-    double bound = attempt(step);
-    if (step > bound) {
-      requireNoFixedStep(bound);
-      trial_ = kHeadroom * bound;
-      step = stepWithin(end);
-      bound = attempt(step);
-      progress_.repeated_steps += 1;
-    }
-    trial_ = kHeadroom * bound;
-    const double next = step < end - time_ ? time_ + step : end;
-    progress_.cell_updates += engine_->accept();
-    for (std::size_t k = 0; k < pours_.size(); ++k) {
-      const double seconds = std::min(next, pours_[k].stop) - std::max(time_, pours_[k].start);
-      if (seconds > 0.0 && pours_[k].rate != 0.0) engine_->pour(k, seconds * pours_[k].rate);
-    }
-    time_ = next;
-    progress_.last_step = step;
-    progress_.steps += 1;
-    steps_since_cleared_ += 1;
-    if (time_ >= end || !parameters_.displacement || bodiesHaveMoved()) {
-      clearBodies();
-    } else if (steps_since_cleared_ % kMostStepsUnsorted == 0 &&
-               !engine_->sortSand(kHopsPerStep * kMostStepsUnsorted)) {
-      clearBodies();
+  /// Waits until the sand is where it was to be advanced to.
+  void finish() {
+    while (runs_) {
+      const StepRun run = engine_->finish();
+      runs_ = false;
+      take(run);
+      if (time_ < end_) startRun();
     }
   }
 
-  /// Whether some body has moved so far that sand has to make way. Rays are dear, and a body crosses a column
-  /// in many steps; whoever looks at the end of an advance finds all bodies cleared.
-  bool bodiesHaveMoved() const {
-    for (const Body& body : bodies_) {
-      if (body.motion.empty()) continue;
-      const Eigen::Isometry3d pose = body.motion.poseAt(time_);
-      const double turned = turnBetween(body.cleared_at, pose).angle();
-      const double moved = (pose.translation() - body.cleared_at.translation()).norm() + turned * body.reach;
-      if (moved > kLongestWayUncleared * grid_.spacing) return true;
+  /// Takes steps until `end_`, or as far as a list of placements goes.
+  void startRun() {
+    const SolverParameters& solver = parameters_.solver;
+    StepRun run{};
+    run.bounds = {solver.courant * grid_.spacing, solver.max_step, solver.fixed_step.value_or(0.0)};
+    run.end = end_;
+    run.displacement = parameters_.displacement;
+    run.most_steps = std::numeric_limits<std::uint64_t>::max();
+    run.time = time_;
+    run.trial = trial_;
+    run.placement = -1;
+    run.steps_since_placed = steps_since_placed_;
+    run.progress = progress_;
+    schedule();
+    runs_ = true;
+    engine_->start(run, placementsOf(schedule_));
+  }
+
+  void take(const StepRun& run) {
+    time_ = run.time;
+    trial_ = run.trial;
+    progress_ = run.progress;
+    steps_since_placed_ = run.steps_since_placed;
+    if (run.placement >= 0) {
+      const Instant& last = schedule_[static_cast<std::size_t>(run.placement)];
+      for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        Body& body = bodies_[k];
+        if (body.motion.empty()) continue;
+        body.placed_at = last.poses[k];
+        body.placed_time = last.time;
+        body.still = last.still[k];
+      }
     }
-    return false;
+    if (run.too_long_for > 0.0) requireShorterStep(run.too_long_for);
+  }
+
+  /// Where all bodies are at a time; those without a pose are anywhere.
+  struct Instant {
+    double time;
+    std::vector<Eigen::Isometry3d> poses;
+    std::vector<Twist> twists;
+    std::vector<int> still;
+  };
+
+  /// Decides when bodies are placed, so often that none goes far in between, but not much more often than
+  /// steps are taken.
+  void schedule() {
+    schedule_.clear();
+    if (std::all_of(bodies_.begin(), bodies_.end(), [](const Body& body) { return body.motion.empty(); })) {
+      // Bodies that were removed, or have no pose yet, are nowhere.
+      if (!bodies_.empty()) schedule_.push_back(instantAt(end_));
+      return;
+    }
+    const double shortest = 0.5 * std::min(trial_, parameters_.solver.max_step);
+    divide(time_, end_, shortest);
+  }
+
+  void divide(double from, double to, double shortest) {
+    if (schedule_.size() >= kMostPlacements) return;
+    const double middle = 0.5 * (from + to);
+    if (to - from > shortest && middle > from && middle < to && bodiesMoveFar(from, to)) {
+      divide(from, middle, shortest);
+      divide(middle, to, shortest);
+    } else {
+      schedule_.push_back(instantAt(to));
+    }
+  }
+
+  /// Whether some body moves so far that sand has to make way in between. Rays are dear, and a body crosses a
+  /// column in many steps; whoever looks at the end of an advance finds that sand has made way for all
+  /// bodies.
+  bool bodiesMoveFar(double from, double to) const {
+    return std::any_of(bodies_.begin(), bodies_.end(), [&](const Body& body) {
+      if (body.motion.empty()) return false;
+      const Eigen::Isometry3d before = body.motion.poseAt(from);
+      const Eigen::Isometry3d after = body.motion.poseAt(to);
+      const double turned = turnBetween(before, after).angle();
+      const double moved = (after.translation() - before.translation()).norm() + turned * body.reach;
+      return moved > kLongestWayBetweenPlacements * grid_.spacing;
+    });
+  }
+
+  /// The next placement, after the last one of the schedule.
+  Instant instantAt(double time) const {
+    Instant now{time, {}, {}, {}};
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      const Body& body = bodies_[k];
+      const Instant* before = schedule_.empty() ? nullptr : &schedule_.back();
+      const Eigen::Isometry3d pose =
+          body.motion.empty() ? Eigen::Isometry3d::Identity() : body.motion.poseAt(time);
+      const Eigen::Isometry3d& was = before ? before->poses[k] : body.placed_at;
+      const double since = before ? before->time : body.placed_time;
+      const int still = before ? before->still[k] : body.still;
+      now.poses.push_back(pose);
+      now.twists.push_back(cameWith(body, was, since, pose, time));
+      now.still.push_back(std::isfinite(since) && pose.matrix() == was.matrix() ? still + 1 : 0);
+    }
+    return now;
+  }
+
+  /// With which a body came from where it was placed the last time.
+  static Twist cameWith(const Body& body, const Eigen::Isometry3d& was, double since,
+                        const Eigen::Isometry3d& pose, double time) {
+    if (body.motion.empty()) return {};
+    if (std::isinf(since)) return body.motion.twistAt(time);
+    const double duration = time - since;
+    if (!(duration > 0.0)) return {};
+    return twistOf(pose.translation() - was.translation(), turnBetween(was, pose), duration);
+  }
+
+  std::vector<Placement> placementsOf(const std::vector<Instant>& instants) const {
+    std::vector<Placement> placements;
+    for (const Instant& instant : instants) placements.push_back({instant.time, placed(instant)});
+    return placements;
   }
 
   /// Moves sand out of the bodies where they are now.
-  void clearBodies() {
+  void placeBodies() {
     if (bodies_.empty()) return;
-    engine_->moveBodies(placed(), kHopsPerStep * std::max(1, steps_since_cleared_));
-    noteCleared();
-  }
-
-  void noteCleared() {
-    steps_since_cleared_ = 0;
-    for (Body& body : bodies_) {
-      if (body.motion.empty()) continue;
-      const Eigen::Isometry3d pose = body.motion.poseAt(time_);
-      body.rests = standsStill(body, pose);
-      body.cleared_at = pose;
-      body.cleared_time = time_;
+    schedule_.clear();
+    const Instant now = instantAt(time_);
+    engine_->placeBodies(placed(now), std::max(1, steps_since_placed_));
+    steps_since_placed_ = 0;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      if (bodies_[k].motion.empty()) continue;
+      bodies_[k].still = now.still[k];
+      notePlaced(bodies_[k], now.poses[k]);
     }
   }
 
-  double bodyOverlap() { return bodies_.empty() ? 0.0 : engine_->overlap(placed()); }
-
-  /// Length of the next step; none is a sliver at the end, which roundings of the time would leave. [s]
-  double stepWithin(double end) const {
-    const SolverParameters& solver = parameters_.solver;
-    const double longest = solver.fixed_step.value_or(std::min(trial_, solver.max_step));
-    return end - time_ <= longest * (1.0 + 1e-9) ? end - time_ : longest;
+  void notePlaced(Body& body, const Eigen::Isometry3d& pose) const {
+    body.placed_at = pose;
+    body.placed_time = time_;
   }
 
-  /// Computes a step and returns how long it may be by Eq. 14 and 34. [s]
-  double attempt(double step) {
-    const double speed = engine_->attempt(static_cast<float>(step));
-    return parameters_.solver.courant * grid_.spacing / std::max(speed, 1e-9);
+  double bodyOverlap() {
+    finish();
+    if (bodies_.empty()) return 0.0;
+    schedule_.clear();
+    return engine_->overlap(placed(instantAt(time_)));
   }
 
-  void requireNoFixedStep(double bound) const {
+  void requireShorterStep(double bound) const {
     const SolverParameters& solver = parameters_.solver;
-    if (!solver.fixed_step) return;
     std::ostringstream expected;
     expected << "at most " << bound << " s at " << time_ << " s, where waves and bodies move at "
              << solver.courant * grid_.spacing / bound << " m/s (courant · spacing / speed)";
     throw InvalidParameter("solver.fixed_step", std::to_string(*solver.fixed_step), expected.str());
   }
 
-  std::vector<PlacedBody> placed() const {
+  std::vector<PlacedBody> placed(const Instant& instant) const {
     std::vector<PlacedBody> placed;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
       if (bodies_[k].motion.empty()) continue;
-      PlacedBody body = place(k);
+      PlacedBody body = place(k, instant.poses[k], instant.twists[k]);
+      body.still = instant.still[k];
       if (!body.window.empty()) placed.push_back(body);
     }
     return placed;
   }
 
-  static bool standsStill(const Body& body, const Eigen::Isometry3d& pose) {
-    return std::isfinite(body.cleared_time) && pose.matrix() == body.cleared_at.matrix();
-  }
-
-  /// With which a body came from where sand made way for it the last time.
-  Twist cameWith(const Body& body, const Eigen::Isometry3d& pose) const {
-    if (std::isinf(body.cleared_time)) return body.motion.twistAt(time_);
-    const double duration = time_ - body.cleared_time;
-    if (!(duration > 0.0)) return {};
-    return twistOf(pose.translation() - body.cleared_at.translation(), turnBetween(body.cleared_at, pose),
-                   duration);
-  }
-
-  PlacedBody place(std::size_t number) const {
-    const Body& body = bodies_[number];
-    const DistanceField& field = *body.field;
-    Eigen::Isometry3d pose = body.motion.poseAt(time_);
-    const Twist twist = cameWith(body, pose);
-    const bool rests = body.rests && standsStill(body, pose);
+  PlacedBody place(std::size_t number, Eigen::Isometry3d pose, const Twist& twist) const {
+    const DistanceField& field = *bodies_[number].field;
     pose.pretranslate(-Eigen::Vector3d(grid_.origin_x, grid_.origin_y, 0.0));
 
     PlacedBody placed;
     placed.body = number;
-    placed.rests = rests;
     BodyView& view = placed.view;
     view.field = field.view(nullptr);
     const Eigen::Matrix3d to_body = pose.linear().transpose();
@@ -472,28 +549,27 @@ class Simulator::Implementation {
     return placed;
   }
 
-  Ledger ledger() const { return ledgerOf(engine_->fields()); }
+  const Fields& fields() {
+    finish();
+    engine_->requestFields();
+    return engine_->collectFields();
+  }
+
+  Ledger ledger() { return ledgerOf(fields()); }
 
   Ledger ledgerOf(const Fields& fields) const {
     return {start_volume_, poured_before_ + engine_->poured(), left_before_ + engine_->left(),
             (sum(fields.depth) + sum(fields.load)) * grid_.cellArea()};
   }
 
-  /// Speeds are known only once a step has read them. A step is tried that is a little shorter than the bound
-  /// at the step before, and is repeated in the rare case that speeds have grown by more.
-  static constexpr double kHeadroom = 0.97;
-  static constexpr double kLongestWayUncleared = 0.25;  // of a body between two castings of rays [cells]
-  // Columns by which sand gives way to a body in the time of a step: most of what waits under a body that
-  // comes down fast is inside of it.
-  static constexpr int kHopsPerStep = 4;
-  static constexpr int kMostStepsUnsorted = 4;  // in as many, waves travel a cell
+  static constexpr double kLongestWayBetweenPlacements = 0.25;  // of a body [cells]
+  static constexpr std::size_t kMostPlacements = 64;            // in a run of steps
 
   SimulatorParameters parameters_;
   Grid grid_;
   ChosenBackend chosen_;
   std::unique_ptr<Engine> engine_;
   std::vector<Body> bodies_;
-  std::vector<Pour> pours_;
   double start_volume_ = 0.0;
   double poured_before_ = 0.0;  // before the snapshot from which this goes on [m³]
   double left_before_ = 0.0;
@@ -501,8 +577,11 @@ class Simulator::Implementation {
   double trial_ =
       std::numeric_limits<double>::infinity();  // length of the next step unless something forbids it [s]
   Progress progress_;
-  int steps_since_cleared_ = 0;
-  bool placed_anew_ = false;  // a body has its first pose, and sand may be where it is
+  int steps_since_placed_ = 0;
+  double end_ = 0.0;               // to which the sand is to be advanced [s]
+  bool runs_ = false;              // the engine takes steps
+  std::vector<Instant> schedule_;  // when and where bodies are placed in this run
+  bool placed_anew_ = false;       // a body has its first pose, and sand may be where it is
 };
 
 Simulator::Simulator(const SimulatorParameters& parameters, std::vector<float> bed, std::vector<float> depth,
@@ -534,18 +613,38 @@ void Simulator::addPour(const Pour& pour) { implementation_->addPour(pour); }
 double Simulator::edit(const Edit& edit) { return implementation_->edit(edit); }
 Snapshot Simulator::snapshot() const { return implementation_->snapshot(); }
 void Simulator::restore(const Snapshot& snapshot) { implementation_->restore(snapshot); }
-void Simulator::advance(double duration) { implementation_->advance(duration); }
-void Simulator::advanceTo(double time) { implementation_->advanceTo(time); }
-double Simulator::time() const { return implementation_->time_; }
+void Simulator::advance(double duration) {
+  if (!(duration >= 0.0) || !std::isfinite(duration)) {
+    throw InvalidParameter("duration", std::to_string(duration), "seconds, finite and not negative");
+  }
+  advanceTo(time() + duration);
+}
+void Simulator::advanceTo(double time) {
+  beginAdvanceTo(time);
+  implementation_->finish();
+}
+void Simulator::beginAdvanceTo(double time) { implementation_->beginAdvanceTo(time); }
+double Simulator::time() const {
+  implementation_->finish();
+  return implementation_->time_;
+}
 
-Fields Simulator::fields() const { return implementation_->engine_->fields(); }
+void Simulator::requestFields() {
+  implementation_->finish();
+  implementation_->engine_->requestFields();
+}
+const Fields& Simulator::collectFields() { return implementation_->engine_->collectFields(); }
+Fields Simulator::fields() const { return implementation_->fields(); }
 Ledger Simulator::ledger() const { return implementation_->ledger(); }
-const Progress& Simulator::progress() const { return implementation_->progress_; }
+const Progress& Simulator::progress() const {
+  implementation_->finish();
+  return implementation_->progress_;
+}
 double Simulator::bodyOverlap() const { return implementation_->bodyOverlap(); }
 
 double Simulator::maxSpeed() const {
   const SandConstants sand = sandConstants(grid(), parameters().gravity, parameters().material);
-  const Fields f = fields();
+  const Fields& f = implementation_->fields();
   double fastest = 0.0;
   const auto look = [&](const std::vector<float>& depth, const std::vector<float>& momentum_x,
                         const std::vector<float>& momentum_y) {
@@ -560,7 +659,7 @@ double Simulator::maxSpeed() const {
 }
 
 std::size_t Simulator::activeCells() const {
-  const Fields f = fields();
+  const Fields& f = implementation_->fields();
   std::size_t active = 0;
   for (std::size_t k = 0; k < f.depth.size(); ++k) {
     const bool load_moves = !f.load.empty() && (f.load_momentum_x[k] != 0.0f || f.load_momentum_y[k] != 0.0f);

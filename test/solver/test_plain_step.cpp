@@ -71,19 +71,24 @@ std::vector<PlacedBody> allPlaced(const RandomScene& scene, double time) {
   return bodies;
 }
 
-void addAll(const RandomScene& scene, Engine& engine) {
+void addAll(const RandomScene& scene, SteppedEngine& engine) {
   const Grid grid = scene.sand.parameters.grid.grid();
   for (const RandomBody& body : scene.bodies) engine.addBody(*body.field);
   for (const Pour& pour : scene.pours) {
     Region region;
     region.center = pour.position;
     region.radius = pour.radius;
-    engine.addPour(localRegion(region, grid));
+    engine.addPour(localRegion(region, grid), {});
   }
 }
 
-void expectSame(const Engine& plain, const Engine& tiled) {
-  expectSameBits(plain.fields(), tiled.fields());
+const Fields& fieldsOf(SteppedEngine& engine) {
+  engine.requestFields();
+  return engine.collectFields();
+}
+
+void expectSame(SteppedEngine& plain, SteppedEngine& tiled) {
+  expectSameBits(fieldsOf(plain), fieldsOf(tiled));
   ASSERT_FALSE(::testing::Test::HasFailure());
   ASSERT_EQ(plain.left(), tiled.left());
   ASSERT_EQ(plain.poured(), tiled.poured());
@@ -93,12 +98,12 @@ void expectSame(const Engine& plain, const Engine& tiled) {
 void compare(std::mt19937& random, const RandomScene& scene, int steps) {
   const EngineStart start = startOf(scene);
   PlainEngine plain(HostExecutor(1), RaysAlone{}, start, start.with_slopes);
-  const std::unique_ptr<Engine> tiled = makeHostEngine(start, 1, true, instructionSets().back());
+  const std::unique_ptr<SteppedEngine> tiled = makeHostEngine(start, 1, true, instructionSets().back());
   double time = 0.0;
-  const std::initializer_list<Engine*> engines{&plain, tiled.get()};
-  for (Engine* engine : engines) {
+  const std::initializer_list<SteppedEngine*> engines{&plain, tiled.get()};
+  for (SteppedEngine* engine : engines) {
     addAll(scene, *engine);
-    engine->moveBodies(allPlaced(scene, time), 1);
+    engine->placeBodies(allPlaced(scene, time), 1);
   }
   float dt = static_cast<float>(0.05 * scene.frame);
   for (int step = 0; step < steps; ++step) {
@@ -112,11 +117,11 @@ void compare(std::mt19937& random, const RandomScene& scene, int steps) {
     }
     time += dt;
     const int hops = 1 + static_cast<int>(random() % 3);
-    for (Engine* engine : engines) {
+    for (SteppedEngine* engine : engines) {
       engine->accept();
       for (std::size_t k = 0; k < scene.pours.size(); ++k)
         if (step % 7 != 0) engine->pour(k, dt * scene.pours[k].rate);
-      engine->moveBodies(allPlaced(scene, time), hops);
+      engine->placeBodies(allPlaced(scene, time), hops);
     }
     ASSERT_NO_FATAL_FAILURE(expectSame(plain, *tiled)) << "step " << step;
     dt = static_cast<float>(std::min(uniform(random, 0.3, 1.0) * bound, scene.frame));

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "shallow_sand/coupling/body_view.h"
 #include "shallow_sand/device/window.h"
 
@@ -14,6 +16,8 @@ struct BodyBins {
   const int* members;  ///< numbers of bodies, ascending within a bin
   Window window;
   int across;  ///< bins along x
+  /// 1 for bodies that are left out, for they are far from sand; null if there are none such.
+  const std::uint8_t* apart = nullptr;
 
   SHALLOW_SAND_HOST_DEVICE int binOf(int i, int j) const {
     return (j - window.row_begin) / kSize * across + (i - window.column_begin) / kSize;

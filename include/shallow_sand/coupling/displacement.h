@@ -106,6 +106,9 @@ struct DisplaceSand {
   int across;           ///< cells in a row
   float spacing;
   Window window;  ///< its outermost cells are clear of bodies or at the edge of the grid
+  /// Sand goes on from where it came to without room: bodies have pushed what is beside them before. Then
+  /// columns change only where there is such sand, or beside it.
+  bool again;
 
   SHALLOW_SAND_HOST_DEVICE long long index(int i, int j) const {
     return static_cast<long long>(j) * across + i;
@@ -127,7 +130,7 @@ struct DisplaceSand {
            contact.swept[at] != 0;
   }
   SHALLOW_SAND_HOST_DEVICE bool pushes(int i, int j) const {
-    return window.holds(i, j) && contact.length[index(i, j)] > 0.0f;
+    return !again && window.holds(i, j) && contact.length[index(i, j)] > 0.0f;
   }
   /// Whether nothing comes to a column or goes from it.
   SHALLOW_SAND_HOST_DEVICE bool isLeftAlone(int i, int j) const {

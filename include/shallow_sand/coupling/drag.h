@@ -21,7 +21,8 @@ struct FindSubmerged : BodiesOverBed {
     float length = 0.0f;
     Vector3 sum;
     float reached = bed[at];
-    for (int k = 0; k < solids.count; ++k) {
+    for (int k = 0; k < SolidIntervals::kMost; ++k) {
+      if (k >= solids.count) break;
       const float bottom = maximum(solids.at[k].bottom, reached);
       const float top = minimum(solids.at[k].top, surface);
       if (!(top > bottom)) continue;

@@ -28,6 +28,17 @@ struct MeetBodies : BodiesOverBed {
   /// Bodies stand where they stood the last time, only sand has moved.
   SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const { meet(i, j, contact.top[cellAt(i, j)]); }
 
+  /// Nothing has moved but sand that had no room: columns that hold no such sand stay as they are.
+  SHALLOW_SAND_HOST_DEVICE void again(int i, int j) const {
+    const long long at = cellAt(i, j);
+    const Sand below = columns.ground(at);
+    const Sand above = columns.load(at);
+    if (below.h > contact.clearance[at] || above.h > contact.headroom[at]) return (*this)(i, j);
+    contact.swept[at] = 0;
+    ground.set(at, below);
+    load.set(at, above);
+  }
+
  private:
   SHALLOW_SAND_HOST_DEVICE void meet(int i, int j, float old_top) const {
     const long long at = cellAt(i, j);
@@ -82,6 +93,13 @@ struct MeetBodies : BodiesOverBed {
   }
 };
 
+/// See MeetBodies::again.
+struct MeetBodiesAgain {
+  MeetBodies meet;
+
+  SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const { meet.again(i, j); }
+};
+
 /// Depth of the sand inside of bodies, of one column. [m]
 struct MeasureOverlap : BodiesOverBed {
   SandColumns columns;
@@ -95,7 +113,8 @@ struct MeasureOverlap : BodiesOverBed {
     const float load = columns.load(at).h;
     float sum = 0.0f;
     float reached = b;
-    for (int k = 0; k < solids.count; ++k) {
+    for (int k = 0; k < SolidIntervals::kMost; ++k) {
+      if (k >= solids.count) break;
       const float bottom = maximum(solids.at[k].bottom, reached);
       const float end = maximum(solids.at[k].top, reached);
       sum += maximum(minimum(end, b + ground) - bottom, 0.0f);

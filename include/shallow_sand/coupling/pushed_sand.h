@@ -5,6 +5,8 @@
 
 namespace shallow_sand {
 
+constexpr int kPassesOfPushedSand = 8;  ///< in which pushed sand goes down; even
+
 /// Depth of the sand that was pushed to a column. [m]
 struct PushedDepth {
   const float* depth;

@@ -23,17 +23,19 @@ struct SolidIntervals {
 
   SHALLOW_SAND_HOST_DEVICE void insert(const SolidInterval& interval) {
     SolidInterval carried = interval;
-    for (int k = 0; k < count; ++k) {
-      if (!(carried.bottom < at[k].bottom)) continue;
+    // Over all places, whatever is in use: an index that is known to the compiler needs no memory.
+    for (int k = 0; k < kMost; ++k) {
+      const bool free = k == count;
+      if (k > count || !(free || carried.bottom < at[k].bottom)) continue;
       const SolidInterval higher = at[k];
       at[k] = carried;
+      if (free) {
+        ++count;
+        return;
+      }
       carried = higher;
     }
-    if (count < kMost) {
-      at[count++] = carried;
-    } else {
-      at[kMost - 1].top = maximum(at[kMost - 1].top, carried.top);
-    }
+    at[kMost - 1].top = maximum(at[kMost - 1].top, carried.top);
   }
 };
 
@@ -162,6 +164,7 @@ SHALLOW_SAND_HOST_DEVICE inline SolidIntervals solidsAt(const BodiesOverBed& bod
   SolidIntervals solids;
   const int bin = bins.binOf(i, j);
   for (int k = bins.first[bin]; k < bins.first[bin + 1]; ++k) {
+    if (bins.apart != nullptr && bins.apart[bins.members[k]] != 0) continue;
     const BodyView& body = bins.bodies[bins.members[k]];
     const float from = maximum(b, body.low.z);
     if (x < body.low.x || x > body.high.x || y < body.low.y || y > body.high.y || !(from < body.high.z))
@@ -187,7 +190,8 @@ SHALLOW_SAND_HOST_DEVICE inline LowestSolid lowestSolid(const SolidIntervals& so
   solid.top = solids.at[0].top;
   solid.lowest_body = solids.at[0].body;
   solid.highest_body = solids.at[0].body;
-  for (int k = 1; k < solids.count; ++k) {
+  for (int k = 1; k < SolidIntervals::kMost; ++k) {
+    if (k >= solids.count) break;
     const SolidInterval& interval = solids.at[k];
     if (interval.bottom - solid.top >= spacing) {
       solid.next = interval.bottom;

@@ -11,9 +11,18 @@ namespace shallow_sand {
 struct PlacedBody {
   std::size_t body;
   BodyView view;
-  Window window;       ///< columns it may touch
-  bool rests = false;  ///< neither moves nor moved when it was placed the last time, which was here
+  Window window;  ///< columns it may touch
+  int still = 0;  ///< placements before this one in which it has been just here, without a gap
 };
+
+/// Where all bodies are at an instant.
+struct Placement {
+  double time;  ///< [s]
+  std::vector<PlacedBody> bodies;
+};
+
+/// Sand that reaches above this is near a body; far below, it needs not be looked at. [m]
+float reachOf(const PlacedBody& body, const Grid& grid);
 
 /// Rectangles that hold all the given ones, and do not overlap.
 std::vector<Window> withoutOverlap(std::vector<Window> windows);

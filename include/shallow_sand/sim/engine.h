@@ -8,44 +8,42 @@
 #include "shallow_sand/device/window.h"
 #include "shallow_sand/sim/body_windows.h"
 #include "shallow_sand/sim/simulator.h"
+#include "shallow_sand/sim/step_run.h"
 #include "shallow_sand/solver/change_sand.h"
 #include "shallow_sand/solver/sand_constants.h"
 #include "shallow_sand/solver/step.h"
 
 namespace shallow_sand {
 
-/// The fields on their backend, and the kernels of a step; it knows no time and no motion.
+/// The fields on their backend, and what computes with them; it knows no motion.
 class Engine {
  public:
   virtual ~Engine() = default;
 
   /// Bodies are numbered from 0.
   virtual void addBody(const DistanceField& field) = 0;
-  /// Frees what a body took; it is not cast again, and its number not used again.
+  /// Frees what a body took; it is not placed again, and its number not used again.
   virtual void removeBody(std::size_t body) = 0;
-  /// Prepares a pour; pours are numbered from 0.
-  virtual void addPour(const LocalRegion& region) = 0;
+  /// Pours are numbered from 0.
+  virtual void addPour(const LocalRegion& region, const PourTimes& times) = 0;
 
-  /// Bodies stand here now, and no others: the sand makes way. From under a body it goes by at most `hops`
-  /// columns.
-  virtual void moveBodies(const std::vector<PlacedBody>& bodies, int hops) = 0;
-  /// Sand has moved: what has come under bodies, or has filled the room there, is told from what has not.
-  /// Returns false if it has come near a body that was far above it: then bodies must be placed again.
-  virtual bool sortSand(int hops) = 0;
+  /// Bodies stand here now, and no others: the sand makes way, as far as in so many steps.
+  virtual void placeBodies(const std::vector<PlacedBody>& bodies, int steps) = 0;
   /// Sand will fall on this region: bodies over it are not left out the next time that bodies are placed.
   virtual void expectSand(const LocalRegion& region) = 0;
-  /// Computes a step of dt [s]. Returns the largest speed that it had to follow (Eq. 14, 34), that of bodies
-  /// in the sand included [m/s]: if dt was too long for it, attempt again.
-  virtual float attempt(float dt) = 0;
-  /// The last attempt becomes the state, and sand on bodies flows for as long. Returns how many cells the
-  /// attempt computed.
-  virtual long long accept() = 0;
-  /// Adds this volume [m³] through a pour; takes it away if it is negative, as far as there is some.
-  virtual void pour(std::size_t number, double volume) = 0;
+  /// Starts to take the steps of a run, in which bodies are where these placements say. The GPU goes on by
+  /// itself: no other function may be called before finish() but collectFields().
+  virtual void start(const StepRun& run, std::vector<Placement> placements) = 0;
+  /// Waits for the run that was started. Returns where it came to.
+  virtual StepRun finish() = 0;
   /// Changes the sand at once. Returns by how much it grew [m³].
   virtual double edit(const LocalRegion& region, EditOperation operation, float value) = 0;
 
-  virtual Fields fields() const = 0;
+  /// The fields as they are now leave for the host, which has them when they are collected; a run may be
+  /// started in between.
+  virtual void requestFields() = 0;
+  /// The fields that were requested the last time.
+  virtual const Fields& collectFields() = 0;
   virtual double poured() const = 0;  ///< by pours and edits [m³]
   virtual double left() const = 0;    ///< over open edges, by pours and edits [m³]
   /// Sand inside of these bodies. [m³]
@@ -54,6 +52,19 @@ class Engine {
   virtual ContactSnapshot contacts() const = 0;
   /// Goes on from fields and contacts that were taken from an engine like this one.
   virtual void restore(const Fields& fields, const ContactSnapshot& contacts) = 0;
+};
+
+/// An engine that takes its steps one by one, at the host's command.
+class SteppedEngine : public Engine {
+ public:
+  /// Computes a step of dt [s]. Returns the largest speed that it had to follow (Eq. 14, 34), that of bodies
+  /// in the sand included [m/s]: if dt was too long for it, attempt again.
+  virtual float attempt(float dt) = 0;
+  /// The last attempt becomes the state, and sand on bodies flows for as long. Returns how many cells the
+  /// attempt computed.
+  virtual long long accept() = 0;
+  /// Adds this volume [m³] through a pour; takes it away if it is negative, as far as there is some.
+  virtual void pour(std::size_t number, double volume) = 0;
 };
 
 /// Every backend's engine starts from the same values. `fields` are those of a valid state.
@@ -68,8 +79,8 @@ struct EngineStart {
 };
 
 /// @param sleeping whether cells that cannot move are left out
-std::unique_ptr<Engine> makeHostEngine(const EngineStart& start, int threads, bool sleeping,
-                                       InstructionSet instructions);
+std::unique_ptr<SteppedEngine> makeHostEngine(const EngineStart& start, int threads, bool sleeping,
+                                              InstructionSet instructions);
 
 #ifdef SHALLOW_SAND_WITH_CUDA
 /// @throws std::runtime_error with CUDA's own words

@@ -12,6 +12,7 @@
 #include "shallow_sand/core/parameters.h"
 #include "shallow_sand/device/instruction_set.h"
 #include "shallow_sand/device/window.h"
+#include "shallow_sand/sim/step_run.h"
 
 namespace shallow_sand {
 
@@ -47,13 +48,6 @@ struct Ledger {
   double now = 0.0;
   /// |now − (start + poured − left)| / (start + poured); 0 when there never was sand.
   double error() const;
-};
-
-struct Progress {
-  std::uint64_t steps = 0;
-  std::uint64_t cell_updates = 0;    ///< cells that were computed; those that sleep are not
-  std::uint64_t repeated_steps = 0;  ///< attempts that proved too long for the speeds they met
-  double last_step = 0.0;            ///< [s]
 };
 
 /// What the last rays found, one value a cell each; all empty if no body is over the map. A run goes on from
@@ -128,9 +122,17 @@ class Simulator {
   void advance(double duration);
   /// The same until a time [s]: to no end that is a sum of roundings.
   void advanceTo(double time);
+  /// The same, but the GPU goes on by itself meanwhile. Whatever is asked next waits for it, and throws what
+  /// advanceTo would have thrown; all but collectFields.
+  void beginAdvanceTo(double time);
   double time() const;  ///< [s] since construction
 
   Fields fields() const;
+  /// The fields as they are now start on their way from the GPU. What has changed is sent, while the sand may
+  /// go on.
+  void requestFields();
+  /// The fields that were requested the last time; valid until they are requested again.
+  const Fields& collectFields();
   Ledger ledger() const;
   const Progress& progress() const;
   double maxSpeed() const;          ///< of the sand now [m/s]

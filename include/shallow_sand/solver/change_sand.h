@@ -58,6 +58,13 @@ struct ChangeSand {
   EditOperation operation;
   float value;  ///< [m]
 
+  /// Becomes a change by a volume [m³] that falls on an area [m²].
+  SHALLOW_SAND_HOST_DEVICE void pour(double volume, double area) {
+    const double depth = volume / area;
+    operation = depth < 0.0 ? EditOperation::remove : EditOperation::add;
+    value = static_cast<float>(depth < 0.0 ? -depth : depth);
+  }
+
   SHALLOW_SAND_HOST_DEVICE bool covers(int i, int j) const {
     return region.holds((static_cast<float>(i) + 0.5f) * spacing, (static_cast<float>(j) + 0.5f) * spacing);
   }

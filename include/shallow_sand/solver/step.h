@@ -88,7 +88,7 @@ struct StepArguments {
   float per_length;  ///< Δt/ΔL [s/m]
 
   /// Sets Δt [s] and what follows from it; `sand` must be there already.
-  void setTimeStep(float seconds) {
+  SHALLOW_SAND_HOST_DEVICE void setTimeStep(float seconds) {
     dt = seconds;
     per_time = 1.0f / dt;
     rate = sand.spacing / dt;
@@ -345,21 +345,35 @@ struct Step : StepArguments {
   }
 };
 
-/// Steps one cell, computing all that it needs. Returns its signal speed before the step. [m/s]
+/// What a step finds in a cell.
+struct CellActivity {
+  float speed;  ///< signal speed before the step [m/s]
+  bool moves;   ///< see TileActivity
+};
+
+/// Steps one cell, computing all that it needs.
 template <class Step>
 struct StepCell {
   Step step;
   SandFieldsOut out;
 
-  SHALLOW_SAND_HOST_DEVICE float operator()(int i, int j) const {
+  /// Returns its signal speed before the step. [m/s]
+  SHALLOW_SAND_HOST_DEVICE float operator()(int i, int j) const { return stepped(i, j).speed; }
+
+  SHALLOW_SAND_HOST_DEVICE CellActivity stepped(int i, int j) const {
     const long long at = step.index(i, j);
     const Cell own = step.load(at);
     const Neighbours n = step.neighbours(own, i, j);
-    const CellUpdate next = step.update(own, n, step.fluxes(own, n, i, j));
+    const CellFluxes fluxes = step.fluxes(own, n, i, j);
+    const CellUpdate next = step.update(own, n, fluxes);
     out.depth[at] = next.h;
     out.momentum_x[at] = next.q.x;
     out.momentum_y[at] = next.q.y;
-    return step.signalSpeed(own);
+    const float crossing = (fabsf(fluxes.west.mass) + fabsf(fluxes.east.mass)) +
+                           (fabsf(fluxes.south.mass) + fabsf(fluxes.north.mass));
+    const float before = fabsf(step.in.momentum_x[at]) + fabsf(step.in.momentum_y[at]);
+    const float after = fabsf(next.q.x) + fabsf(next.q.y);
+    return {step.signalSpeed(own), crossing + (before + after) > 0.0f};
   }
 };
 

@@ -5,8 +5,8 @@
 
 namespace shallow_sand {
 
-std::unique_ptr<Engine> makeHostEngine(const EngineStart& start, int threads, bool sleeping,
-                                       InstructionSet instructions) {
+std::unique_ptr<SteppedEngine> makeHostEngine(const EngineStart& start, int threads, bool sleeping,
+                                              InstructionSet instructions) {
   return std::make_unique<EngineOn<HostExecutor, RaysTogether, TiledStepper>>(
       HostExecutor(threads), RaysTogether(instructions), start, start.grid,
       TiledStepper::Options{start.with_slopes, sleeping, instructions});
