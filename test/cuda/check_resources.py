@@ -14,9 +14,10 @@ rounding   In PTX every addition, subtraction, multiplication, division and root
 fused      In machine code the fused operations (FFMA, DFMA) are no more than divisions, reciprocals and roots are made of.
 
 What the last cannot prove: it counts. The sequences of ptxas are known by their marks (FCHK, MUFU), and their slow paths are
-functions of NVIDIA's, left out. For floats the sequences have a fixed length: where the table says that as many are found
-as explained, none is left over. For doubles, and where fewer are found than explained, the count is only a bound. Code for
-architectures other than sm_70 to sm_90 has other numbers for its instructions, and is a finding.
+functions of NVIDIA's, left out. For floats the sequences have a fixed length: where the table tells as many found as
+explained, one that is left over could only stand for one that ptxas spared. For doubles, and where fewer are found than
+explained, the count is no more than a bound. Code for architectures other than sm_70 to sm_90 has other numbers for its
+instructions, and is a finding.
 """
 
 import argparse

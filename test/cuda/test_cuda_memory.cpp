@@ -21,12 +21,27 @@ class CudaMemory : public ::testing::Test {
   RandomScene scene_;
 };
 
+void run(Simulator& simulator, const RandomScene& scene) {
+  for (int frame = 0; frame < 10; ++frame) simulator.advance(scene.frame);
+}
+
 TEST_F(CudaMemory, SandThatRunsTakesNoMore) {
+  scene_.bodies.clear();
   Simulator simulator = simulatorOf(scene_, scene_.sand.parameters);
   simulator.advance(scene_.frame);
   const std::size_t before = allocations();
   EXPECT_GT(before, 0u);
-  for (int frame = 0; frame < 10; ++frame) simulator.advance(scene_.frame);
+  run(simulator, scene_);
+  EXPECT_EQ(allocations(), before);
+}
+
+TEST_F(CudaMemory, BodiesOnTheSameWayAgainTakeNoMore) {
+  Simulator simulator = simulatorOf(scene_, scene_.sand.parameters);
+  const Snapshot start = simulator.snapshot();
+  run(simulator, scene_);
+  simulator.restore(start);
+  const std::size_t before = allocations();
+  run(simulator, scene_);
   EXPECT_EQ(allocations(), before);
 }
 
