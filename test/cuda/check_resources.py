@@ -45,7 +45,7 @@ Symbol = collections.namedtuple("Symbol", "name is_function section begin end")
 
 
 class Unreadable(Exception):
-    pass
+    """A file that cannot be checked."""
 
 
 class Elf:
@@ -436,7 +436,7 @@ def main():
     print_findings(found)
     if not found:
         kernels = set().union(*taken.values())
-        print(f"{len(kernels)} kernels on {len(taken)} architectures take no stack, at most {REGISTERS} registers, and fuse nothing")
+        print(f"{len(kernels)} kernels on {len(taken)} architectures: no stack, at most {REGISTERS} registers, nothing fused")
     return 1 if found else 0
 
 
