@@ -42,13 +42,22 @@ foreach(architecture ${SHALLOW_SAND_CUDA_ARCHITECTURES})
 endforeach()
 string(APPEND gencode " -gencode=arch=compute_${newest},code=compute_${newest}")
 
+# test/cuda/check_resources.py reads the kernels, which it can only where this nvcc is able to leave them uncompressed.
+set(SHALLOW_SAND_READABLE_KERNELS FALSE)
+set(uncompressed "")
+execute_process(COMMAND ${SHALLOW_SAND_NVCC} --help OUTPUT_VARIABLE known_options ERROR_QUIET)
+if(known_options MATCHES "--no-compress ")
+  set(SHALLOW_SAND_READABLE_KERNELS TRUE)
+  set(uncompressed " --no-compress")
+endif()
+
 set(CMAKE_CUDA_ARCHITECTURES OFF)
 set(CMAKE_CUDA_STANDARD 17)
 set(CMAKE_CUDA_STANDARD_REQUIRED ON)
 set(CMAKE_CUDA_RUNTIME_LIBRARY Shared)
 # 20012: Eigen's own headers.
 string(APPEND CMAKE_CUDA_FLAGS
-  "${gencode} --fmad=false --expt-relaxed-constexpr -Werror=all-warnings --diag-suppress=20012"
+  "${gencode}${uncompressed} --fmad=false --expt-relaxed-constexpr -Werror=all-warnings --diag-suppress=20012"
   " -Xcompiler=-Wall,-Wextra,-Werror,-ffp-contract=off,-fno-math-errno,-fno-trapping-math")
 enable_language(CUDA)
 set(SHALLOW_SAND_WITH_CUDA TRUE)

@@ -3,6 +3,8 @@
 #include <memory>
 #include <string>
 
+#include "cuda_calls.h"
+#include "cuda_device.h"
 #include "random_scene.h"
 #include "random_seed.h"
 
@@ -52,14 +54,8 @@ void compare(const RandomScene& scene, std::uint64_t& steps) {
 class CudaParity : public ::testing::Test {
  protected:
   void SetUp() override {
-    SimulatorParameters parameters;
-    parameters.grid.size = {parameters.grid.spacing, parameters.grid.spacing};
-    parameters.backend = Backend::cuda;
-    try {
-      Simulator simulator(parameters, {0.0f}, {0.0f});
-    } catch (const InvalidParameter& reason) {
-      GTEST_SKIP() << reason.what();
-    }
+    const std::string missing = cudaDeviceMissing();
+    if (!missing.empty()) GTEST_SKIP() << missing;
   }
 };
 
@@ -67,14 +63,20 @@ class CudaParity : public ::testing::Test {
 /// over.
 constexpr Size kSizes[] = {{1, 1}, {1, 7}, {33, 1}, {2, 2}, {31, 3}, {32, 4}, {33, 5}, {70, 45}};
 
-/// Compares a random scene of every size; `most_bodies` is the largest number of bodies in one.
+/// Compares a random scene of every size, by turns with either reconstruction; `most_bodies` is the largest
+/// number of bodies in one.
 void compareAllSizes(int pours, int most_bodies) {
   std::mt19937 random = seededGenerator();
   std::uint64_t steps = 0;
+  bool with_slopes = false;
   for (const Size& size : kSizes) {
     SCOPED_TRACE(std::to_string(size.columns) + " x " + std::to_string(size.rows));
     const int bodies = most_bodies > 0 ? 1 + static_cast<int>(random() % most_bodies) : 0;
-    compare(tiltedScene(random, size.columns, size.rows, pours, bodies), steps);
+    RandomScene scene = tiltedScene(random, size.columns, size.rows, pours, bodies);
+    scene.sand.parameters.solver.reconstruction =
+        with_slopes ? Reconstruction::minmod : Reconstruction::constant;
+    compare(scene, steps);
+    with_slopes = !with_slopes;
   }
   EXPECT_GT(steps, 0u);
   ::testing::Test::RecordProperty("steps", std::to_string(steps));
@@ -85,6 +87,27 @@ TEST_F(CudaParity, SandAlone) { compareAllSizes(0, 0); }
 TEST_F(CudaParity, Pours) { compareAllSizes(2, 0); }
 
 TEST_F(CudaParity, MovingBodies) { compareAllSizes(1, 3); }
+
+TEST_F(CudaParity, DragAlone) {
+  std::mt19937 random = seededGenerator();
+  RandomScene scene = tiltedScene(random, 33, 5, 0, 3);
+  scene.sand.parameters.displacement = false;
+  std::uint64_t steps = 0;
+  compare(scene, steps);
+  EXPECT_GT(steps, 0u);
+}
+
+/// A kernel that no test has launched, no test has compared.
+class EveryKernel : public ::testing::Environment {
+ public:
+  void TearDown() override {
+    const auto& tests = *::testing::UnitTest::GetInstance();
+    if (tests.test_to_run_count() < tests.total_test_count() || !cudaDeviceMissing().empty()) return;
+    for (const std::string& kernel : kernelsNeverLaunched()) ADD_FAILURE() << "never launched: " << kernel;
+  }
+};
+
+const ::testing::Environment* const kEveryKernel = ::testing::AddGlobalTestEnvironment(new EveryKernel);
 
 }  // namespace
 }  // namespace shallow_sand

@@ -1,0 +1,60 @@
+#include <gtest/gtest.h>
+
+#include "cuda_calls.h"
+#include "cuda_device.h"
+#include "random_scene.h"
+#include "random_seed.h"
+
+namespace shallow_sand {
+namespace {
+
+class CudaMemory : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string missing = cudaDeviceMissing();
+    if (!missing.empty()) GTEST_SKIP() << missing;
+    std::mt19937 random = seededGenerator();
+    scene_ = randomScene(random, randomSand(random, 33, 5), 1, 2);
+    scene_.sand.parameters.backend = Backend::cuda;
+  }
+
+  RandomScene scene_;
+};
+
+void run(Simulator& simulator, const RandomScene& scene) {
+  for (int frame = 0; frame < 10; ++frame) simulator.advance(scene.frame);
+}
+
+TEST_F(CudaMemory, SandThatRunsTakesNoMore) {
+  scene_.bodies.clear();
+  Simulator simulator = simulatorOf(scene_, scene_.sand.parameters);
+  simulator.advance(scene_.frame);
+  const std::size_t before = allocations();
+  EXPECT_GT(before, 0u);
+  run(simulator, scene_);
+  EXPECT_EQ(allocations(), before);
+}
+
+TEST_F(CudaMemory, BodiesOnTheSameWayAgainTakeNoMore) {
+  Simulator simulator = simulatorOf(scene_, scene_.sand.parameters);
+  const Snapshot start = simulator.snapshot();
+  run(simulator, scene_);
+  simulator.restore(start);
+  const std::size_t before = allocations();
+  run(simulator, scene_);
+  EXPECT_EQ(allocations(), before);
+}
+
+TEST_F(CudaMemory, SimulatorGivesItAllBack) {
+  const std::size_t before = allocationsHeld();
+  {
+    Simulator simulator = simulatorOf(scene_, scene_.sand.parameters);
+    simulator.advance(scene_.frame);
+    simulator.bodyOverlap();
+    EXPECT_GT(allocationsHeld(), before);
+  }
+  EXPECT_EQ(allocationsHeld(), before);
+}
+
+}  // namespace
+}  // namespace shallow_sand
