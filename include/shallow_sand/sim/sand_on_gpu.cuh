@@ -74,8 +74,7 @@ struct GpuRun {
 /// Where a run of steps is, once for each block: what all threads know needs no registers of each.
 struct RunInBlock {
   StepRun run;
-  SandLayer state;
-  SandLayer next;     ///< where a step writes
+  bool flipped;       ///< the state is where the next one was at the start of the run
   float dt;           ///< of the last attempt [s]
   StepNumber number;  ///< of the step that is to be taken
   int computed;       ///< cells of the last attempt
@@ -94,8 +93,7 @@ class SandOnGpu {
       : run_(run), bodies_(run.bodies), tiles_(run.tiles), here_(here), team_(run.ballots) {
     once([&] {
       here_.run = start;
-      here_.state = run_.state;
-      here_.next = run_.next;
+      here_.flipped = false;
       here_.number = run_.first_step;
       here_.placement = start.placement;
       here_.rests = with_bodies && bodies_.rests[0] != 0;
@@ -156,9 +154,7 @@ class SandOnGpu {
   __device__ long long accept() {
     countOutflow();
     once([&] {
-      const SandLayer before = here_.state;
-      here_.state = here_.next;
-      here_.next = before;
+      here_.flipped = !here_.flipped;
       here_.number += 1;
     });
     if (with_bodies && !here_.rests) flowLoads();
@@ -169,7 +165,7 @@ class SandOnGpu {
   __device__ PourTimes pourTimes(int k) const { return run_.pours[k].times; }
   __device__ void pour(int k, double volume) {
     ChangeSand change = run_.pours[k].change;
-    const SandLayer& sand = here_.state;
+    const SandLayer sand = state();
     change.depth = sand.depth;
     change.momentum_x = sand.momentum_x;
     change.momentum_y = sand.momentum_y;
@@ -203,15 +199,18 @@ class SandOnGpu {
   }
 
  private:
+  __device__ SandLayer state() const { return here_.flipped ? run_.next : run_.state; }
+  __device__ SandLayer next() const { return here_.flipped ? run_.state : run_.next; }
+
   __device__ SandColumns columns() const {
     SandColumns columns = bodies_.columns;
-    columns.visible = here_.state;
+    columns.visible = state();
     return columns;
   }
 
   __device__ StepArguments arguments() const {
     StepArguments step = run_.step;
-    const SandLayer& sand = here_.state;
+    const SandLayer sand = state();
     step.in.depth = sand.depth;
     step.in.momentum_x = sand.momentum_x;
     step.in.momentum_y = sand.momentum_y;
@@ -222,7 +221,7 @@ class SandOnGpu {
   template <bool near_bodies>
   __device__ float stepped(int tile) const {
     using LocalStep = Step<near_bodies, with_slopes>;
-    return stepTile(StepCell<LocalStep>{LocalStep{arguments()}, here_.next}, tiles_, tile, here_.number);
+    return stepTile(StepCell<LocalStep>{LocalStep{arguments()}, next()}, tiles_, tile, here_.number);
   }
 
   __device__ void countOutflow() const {
@@ -251,7 +250,7 @@ class SandOnGpu {
                          bodies_.contact,
                          bodies_.bed,
                          bodies_.flowed,
-                         here_.next,
+                         next(),
                          bodies_.next_hidden};
     bool flowed = false;
     forEachCell([&](int i, int j, int) {
@@ -395,7 +394,7 @@ class SandOnGpu {
 
   __device__ void meet(int hop, bool cast) const {
     forEachCell([&](int i, int j, int window) {
-      const MeetBodies meet{overBed(window), columns(), bodies_.contact, here_.next, bodies_.next_hidden};
+      const MeetBodies meet{overBed(window), columns(), bodies_.contact, next(), bodies_.next_hidden};
       if (hop > 0) {
         meet.again(i, j);
       } else if (cast) {
@@ -410,8 +409,7 @@ class SandOnGpu {
   __device__ void measureDistances() const {
     const int across = run_.step.columns;
     forEachLine(true, [&](int k, const Window& window) {
-      DistanceAlongColumns{bodies_.contact.clearance, here_.next.depth,
-                           bodies_.distance,          across,
+      DistanceAlongColumns{bodies_.contact.clearance, next().depth, bodies_.distance, across,
                            run_.step.sand.spacing,    window}(0, k);
     });
     forEachLine(false, [&](int k, const Window& window) {
@@ -429,7 +427,7 @@ class SandOnGpu {
       const int across = run_.step.columns;
       DisplaceSand{bodies_.contact,
                    bodies_.distance,
-                   here_.next,
+                   next(),
                    bodies_.next_hidden,
                    bodies_.bed,
                    columns(),
@@ -446,7 +444,7 @@ class SandOnGpu {
 
   __device__ void layPushedSand() const {
     SandLayer from = bodies_.pushed;
-    SandLayer to = here_.next;
+    SandLayer to = next();
     const auto sand = [&](int window) {
       return PushedSand{
           columns(),         run_.step.in.repose_rise,    run_.step.sand, from, bodies_.next_hidden.depth,
@@ -470,12 +468,12 @@ class SandOnGpu {
 
   __device__ void drag() const {
     forEachCell([&](int i, int j, int window) {
-      const FindSubmerged find{overBed(window), here_.state.depth, bodies_.contact};
+      const FindSubmerged find{overBed(window), state().depth, bodies_.contact};
       find(i, j, solidsAt(find, i, j));
     });
     team_.wait();
     forEachCell([&](int i, int j, int window) {
-      DragSand{bodies_.contact, here_.state, run_.step.columns, run_.step.sand.spacing,
+      DragSand{bodies_.contact, state(), run_.step.columns, run_.step.sand.spacing,
                bodies_.windows[window].cells}(i, j);
       tiles_.touch(i, j, here_.number);
     });

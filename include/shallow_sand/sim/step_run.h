@@ -133,11 +133,12 @@ struct StepRun {
 /// Takes a step. `sand` is that of a backend; see takeSteps.
 template <class Sand>
 SHALLOW_SAND_HOST_DEVICE void takeStep(Sand& sand, StepRun& run) {
-  float speed = sand.attempt(static_cast<float>(run.nextStep()));
-  if (run.nextStep() > run.boundFor(speed)) {
+  float speed = 0.0f;
+  for (int tries = 1;; ++tries) {
+    speed = sand.attempt(static_cast<float>(run.nextStep()));
+    if (tries == 2 || run.nextStep() <= run.boundFor(speed)) break;
     sand.once([&] { run.shorten(speed); });
     if (run.too_long_for > 0.0) return;
-    speed = sand.attempt(static_cast<float>(run.nextStep()));
   }
   const long long cells = sand.accept();
   for (int k = 0; k < sand.pours(); ++k) {
