@@ -6,6 +6,7 @@
 #include "benchmark/cpu_benchmarks.h"
 #include "benchmark/maps.h"
 #include "benchmark/run_benchmarks.h"
+#include "benchmark/table1.h"
 #include "shallow_sand/device/passive_threads.h"
 #ifdef SHALLOW_SAND_WITH_CUDA
 #include "benchmark/cuda_benchmarks.h"
@@ -34,6 +35,7 @@ std::string unavailable(Backend backend) {
 }
 
 void registerBenchmarks(Backend backend) {
+  registerTable1(backend);
 #ifdef SHALLOW_SAND_WITH_CUDA
   if (backend == Backend::cuda) return registerCudaBenchmarks();
 #endif
