@@ -8,6 +8,7 @@
 #include "benchmark/run_benchmarks.h"
 #include "benchmark/timing.h"
 #include "shallow_sand/bodies/distance_field.h"
+#include "shallow_sand/device/passive_threads.h"
 
 /// What bodies add to the cost of a step; see README.md here. The same sand runs by turns with and without
 /// bodies, so that what else a machine does falls on both.
@@ -112,4 +113,7 @@ void registerAll() {
 }  // namespace
 }  // namespace shallow_sand
 
-int main(int argc, char** argv) { return shallow_sand::runBenchmarks(argc, argv, shallow_sand::registerAll); }
+int main(int argc, char** argv) {
+  shallow_sand::waitPassively(argv);
+  return shallow_sand::runBenchmarks({argv, argv + argc}, shallow_sand::registerAll);
+}

@@ -16,6 +16,11 @@ struct Map {
   Simulator simulator() const { return Simulator(parameters, bed, depth); }
 };
 
+inline Map onBackend(Backend backend, Map map) {
+  map.parameters.backend = backend;
+  return map;
+}
+
 inline SimulatorParameters parametersOf(int side, int threads) {
   constexpr double kSpacing = 0.02;
   SimulatorParameters parameters;

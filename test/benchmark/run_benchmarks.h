@@ -2,16 +2,21 @@
 
 #include <benchmark/benchmark.h>
 
-#include "shallow_sand/device/passive_threads.h"
+#include <string>
+#include <vector>
 
 namespace shallow_sand {
 
 /// What a program does that has registered benchmarks by `registerAll`. Returns its exit code.
-inline int runBenchmarks(int argc, char** argv, void (*registerAll)()) {
-  waitPassively(argv);
+/// @param arguments the program's name and Google Benchmark's options
+template <class RegisterAll>
+int runBenchmarks(std::vector<std::string> arguments, RegisterAll&& registerAll) {
+  std::vector<char*> pointers;
+  for (std::string& argument : arguments) pointers.push_back(argument.data());
+  int count = static_cast<int>(pointers.size());
   registerAll();
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::Initialize(&count, pointers.data());
+  if (benchmark::ReportUnrecognizedArguments(count, pointers.data())) return 2;
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

@@ -1,124 +1,66 @@
-#include <benchmark/benchmark.h>
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <string>
+#include <vector>
 
-#include <algorithm>
-
-#include "benchmark/busy_processes.h"
-#include "benchmark/references.h"
+#include "benchmark/cpu_benchmarks.h"
+#include "benchmark/maps.h"
 #include "benchmark/run_benchmarks.h"
-#include "benchmark/timing.h"
+#include "benchmark/table1.h"
+#include "shallow_sand/device/passive_threads.h"
+#ifdef SHALLOW_SAND_WITH_CUDA
+#include "benchmark/cuda_benchmarks.h"
+#endif
 
-/// How fast the CPU's step is, beside what bounds it and what it is compared to; see README.md here.
-/// Everything that a ratio compares runs by turns, so that what else a machine does falls on both.
-namespace shallow_sand {
+/// How fast a step is, on the backend that is asked for; see README.md here.
 namespace {
 
-void setCounters(benchmark::State& state, const TimedRun& run) {
-  state.counters["cells_per_second"] = 1.0 / run.cells().typical();
-  state.counters["best_cells_per_second"] = 1.0 / run.cells().best();
-  state.counters["repeated"] = run.repeated();
-  state.counters["moving"] = run.moving();
+using namespace shallow_sand;
+
+constexpr int kBadInput = 2;
+
+int failed(const std::string& message) {
+  std::fprintf(stderr, "sand_benchmark: %s\n", message.c_str());
+  return kBadInput;
 }
 
-/// A map in which every cell moves, by turns with copying what its steps must move and with the plain loop.
-void dense(benchmark::State& state, const Map& map) {
-  const double cells = static_cast<double>(map.bed.size());
-  TimedRun run(map.simulator());
-  CopyingStep copying(map, map.parameters.threads);
-  PlainStep plain(map, map.parameters.threads);
-  Timing copy_time;
-  Timing plain_time;
-  int frame = 0;
-  for (auto _ : state) {
-    state.SetIterationTime(run.runFrame());
-    // Not after every frame: they empty the caches of what the next one needs.
-    if (frame++ % 8 != 0) continue;
-    copying();
-    copy_time.add(secondsOf(copying), cells);
-    plain_time.add(secondsOf(plain), cells);
+/// Why a backend cannot be measured here; empty if it can.
+std::string unavailable(Backend backend) {
+  try {
+    onBackend(backend, restingSand(1, 1, Edge::wall)).simulator();
+  } catch (const InvalidParameter& reason) {
+    return reason.what();
   }
-  setCounters(state, run);
-  state.counters["times_copy"] = run.cells().best() / copy_time.best();
-  state.counters["times_plain_loop"] = run.cells().best() / plain_time.best();
-  state.counters["copy_bytes_per_second"] = 28.0 / copy_time.best();
+  return "";
 }
 
-void moving(benchmark::State& state) {
-  dense(state, sloshingSand(static_cast<int>(state.range(0)), static_cast<int>(state.range(1))));
-}
-
-void instructions(benchmark::State& state) {
-  Map map = sloshingSand(256, 1);
-  map.parameters.instructions = static_cast<InstructionSet>(state.range(0));
-  state.SetLabel(toString(*map.parameters.instructions));
-  dense(state, map);
-}
-
-void minmod(benchmark::State& state) {
-  Map map = sloshingSand(static_cast<int>(state.range(0)), 1);
-  map.parameters.solver.reconstruction = Reconstruction::minmod;
-  dense(state, map);
-}
-
-/// A patch of 256² cells moves in a map of 4096², by turns with a map of 256² that moves.
-void patch(benchmark::State& state) {
-  const int threads = static_cast<int>(state.range(1));
-  TimedRun run(sloshingPit(4096, 256, static_cast<int>(state.range(0)), threads).simulator());
-  TimedRun alone(sloshingSand(256, threads).simulator());
-  for (auto _ : state) {
-    state.SetIterationTime(run.runFrame());
-    alone.runFrame();
-  }
-  setCounters(state, run);
-  state.counters["times_alone"] = run.steps().best() / alone.steps().best();
-  state.counters["typical_times_alone"] = run.steps().typical() / alone.steps().typical();
-}
-
-/// A frame of 1/50 s of a large map in which nothing moves.
-void resting(benchmark::State& state) {
-  constexpr double kFrame = 0.02;
-  const Edge edge = state.range(0) != 0 ? Edge::open : Edge::wall;
-  Simulator simulator = restingSand(4096, 2, edge).simulator();
-  simulator.advance(10.0 * kFrame);
-  for (auto _ : state) simulator.advance(kFrame);
-  state.counters["moving"] = static_cast<double>(simulator.activeCells());
-}
-
-/// Two threads by turns with one, beside other processes that are busy on every core.
-void besideBusyProcesses(benchmark::State& state) {
-  const int side = static_cast<int>(state.range(0));
-  const BusyProcesses others(static_cast<int>(state.range(1)));
-  TimedRun two(sloshingSand(side, 2).simulator());
-  TimedRun one(sloshingSand(side, 1).simulator());
-  for (auto _ : state) {
-    state.SetIterationTime(two.runFrame());
-    one.runFrame();
-  }
-  setCounters(state, two);
-  state.counters["times_one_thread"] = two.cells().typical() / one.cells().typical();
-  state.counters["one_thread_cells_per_second"] = 1.0 / one.cells().typical();
-}
-
-void registerAll() {
-  const auto add = [](const char* name, void (*function)(benchmark::State&)) {
-    return benchmark::RegisterBenchmark(name, function)->UseManualTime();
-  };
-  add("moving", moving)->ArgNames({"side", "threads"})->ArgsProduct({{64, 128, 256, 1024, 4096}, {1, 2}});
-  for (const InstructionSet set : instructionSets())
-    add("instructions", instructions)->Arg(static_cast<int>(set));
-  add("minmod", minmod)->ArgNames({"side"})->Arg(256)->Arg(1024);
-  // Corners of tiles lie at multiples of 32 columns and 16 rows.
-  add("patch", patch)->ArgNames({"corner", "threads"})->ArgsProduct({{1024, 1031, 1039}, {1, 2}});
-  benchmark::RegisterBenchmark("resting", resting)
-      ->ArgNames({"open_edges"})
-      ->Arg(0)
-      ->Arg(1)
-      ->Unit(benchmark::kMicrosecond);
-  add("beside_busy_processes", besideBusyProcesses)
-      ->ArgNames({"side", "others"})
-      ->ArgsProduct({{64, 256, 1024}, {0, 1, 2}});
+void registerBenchmarks(Backend backend) {
+  registerTable1(backend);
+#ifdef SHALLOW_SAND_WITH_CUDA
+  if (backend == Backend::cuda) return registerCudaBenchmarks();
+#endif
+  if (backend == Backend::cpu) registerCpuBenchmarks();
 }
 
 }  // namespace
-}  // namespace shallow_sand
 
-int main(int argc, char** argv) { return shallow_sand::runBenchmarks(argc, argv, shallow_sand::registerAll); }
+int main(int argument_count, char** arguments) {
+  waitPassively(arguments);
+  std::string name = "cpu";
+  CLI::App app("Measures how fast the sand is.", "sand_benchmark");
+  app.add_option("--backend", name, "cpu (the default) or cuda")->check(CLI::IsMember({"cpu", "cuda"}));
+  app.footer("Options that begin with --benchmark_ are Google Benchmark's.");
+  app.allow_extras();
+  try {
+    app.parse(argument_count, arguments);
+  } catch (const CLI::ParseError& error) {
+    const bool asked_for = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);
+    return asked_for ? app.exit(error) : failed(std::string(error.what()) + "; see sand_benchmark --help");
+  }
+  const Backend backend = backendFromString(name);
+  const std::string reason = unavailable(backend);
+  if (!reason.empty()) return failed("nothing is measured: " + reason);
+  std::vector<std::string> others = app.remaining();
+  others.insert(others.begin(), arguments[0]);
+  return runBenchmarks(others, [&] { registerBenchmarks(backend); });
+}

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
+#include <utility>
 
 #include "shallow_sand/sim/simulator.h"
 
@@ -32,36 +34,44 @@ double secondsOf(Function&& function) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
+constexpr double kFiftieth = 0.02;  ///< a frame as sand_node and a film have it [s]
+
 /// A simulator that runs frame by frame, and how long its steps take.
 class TimedRun {
  public:
-  explicit TimedRun(Simulator simulator) : simulator_(std::move(simulator)) {
-    simulator_.advance(20.0 * kFrame);  // all cells have begun to move
+  /// @param frame its length [s]
+  explicit TimedRun(Simulator simulator, double frame = 0.03)
+      : simulator_(std::move(simulator)), frame_(frame) {
+    simulator_.advance(20.0 * frame_);  // all cells have begun to move
     repeated_before_ = simulator_.progress().repeated_steps;
   }
 
   /// Returns the seconds that a frame took.
   double runFrame() {
     const Progress before = simulator_.progress();
-    const double seconds = secondsOf([&] { simulator_.advance(kFrame); });
+    const double seconds = secondsOf([&] { simulator_.advance(frame_); });
     const Progress& after = simulator_.progress();
     cells_.add(seconds, static_cast<double>(after.cell_updates - before.cell_updates));
     steps_.add(seconds, static_cast<double>(after.steps - before.steps));
+    frames_.add(seconds, 1.0);
     return seconds;
   }
   const Timing& cells() const { return cells_; }
   const Timing& steps() const { return steps_; }
+  const Timing& frames() const { return frames_; }
+  double stepsPerFrame() const { return frames_.typical() / steps_.typical(); }
   double repeated() const {
     return static_cast<double>(simulator_.progress().repeated_steps - repeated_before_);
   }
   double moving() const { return static_cast<double>(simulator_.activeCells()); }
 
  private:
-  static constexpr double kFrame = 0.03;  // about ten steps [s]
   Simulator simulator_;
+  double frame_;
   std::uint64_t repeated_before_ = 0;
   Timing cells_;
   Timing steps_;
+  Timing frames_;
 };
 
 }  // namespace shallow_sand
