@@ -11,7 +11,7 @@ namespace {
 const dim3 kBlock(kBlockColumns, kBlockRows);
 
 template <bool with_bodies, bool with_slopes>
-__global__ void __launch_bounds__(kBlockThreads)
+__global__ void __launch_bounds__(kBlockThreads, 1)
     takeStepsOnGpu(SHALLOW_SAND_GRID_CONSTANT const GpuRun run,
                    SHALLOW_SAND_GRID_CONSTANT const StepRun start, StepRun* result) {
   __shared__ RunInBlock here;
@@ -27,20 +27,20 @@ TakeSteps kernelFor(bool with_bodies, bool with_slopes) {
   return with_slopes ? takeStepsOnGpu<false, true> : takeStepsOnGpu<false, false>;
 }
 
-__global__ void __launch_bounds__(kBlockThreads) changeSandOnGpu(const ChangeSand change) {
+__global__ void __launch_bounds__(kBlockThreads, 1) changeSandOnGpu(const ChangeSand change) {
   const int i = change.window.column_begin + static_cast<int>(blockIdx.x * kBlockColumns + threadIdx.x);
   const int j = change.window.row_begin + static_cast<int>(blockIdx.y * kBlockRows + threadIdx.y);
   if (change.window.holds(i, j)) change(i, j);
 }
 
-__global__ void __launch_bounds__(kBlockThreads)
+__global__ void __launch_bounds__(kBlockThreads, 1)
     touchCells(const DueTiles tiles, const Window cells, const StepNumber step) {
   const int i = cells.column_begin + static_cast<int>(blockIdx.x * kBlockColumns + threadIdx.x);
   const int j = cells.row_begin + static_cast<int>(blockIdx.y * kBlockRows + threadIdx.y);
   if (cells.holds(i, j)) tiles.touch(i, j, step);
 }
 
-__global__ void __launch_bounds__(kBlockThreads)
+__global__ void __launch_bounds__(kBlockThreads, 1)
     measureOverlap(const BodiesOnGpu bodies, const StepArguments step, float* overlap) {
   const CellBlock& block = bodies.blocks[blockIdx.x];
   const int i = block.cells.column_begin + static_cast<int>(threadIdx.x);

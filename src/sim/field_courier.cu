@@ -28,7 +28,7 @@ __device__ void packCell(const FieldSources& sources, long long at, float* value
   values[6 * kBlockThreads] = sources.top[at];
 }
 
-__global__ void __launch_bounds__(kBlockThreads)
+__global__ void __launch_bounds__(kBlockThreads, 1)
     packChangedTiles(const DueTiles tiles, const FieldSources sources, const Parcel parcel) {
   __shared__ int place;
   const bool first = threadIdx.x == 0 && threadIdx.y == 0;
