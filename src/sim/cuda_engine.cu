@@ -72,7 +72,8 @@ int mostBlocks(TakeSteps kernel) {
 /// Steps of a launch; a GPU that also shows a desktop is not taken from it for longer.
 std::uint64_t stepsOfLaunch(const Grid& grid) {
   constexpr std::uint64_t kCells = 1000000000;
-  return std::max<std::uint64_t>(16, kCells / grid.cells());
+  constexpr std::uint64_t kMost = 20000;
+  return std::min(kMost, std::max<std::uint64_t>(16, kCells / grid.cells()));
 }
 
 }  // namespace
@@ -106,10 +107,17 @@ CudaEngine::CudaEngine(const EngineStart& start)
   touch(Window::all(grid_));
 }
 
+CudaEngine::~CudaEngine() {
+  cudaStreamSynchronize(stream_);  // a run that nobody waited for still uses the memory
+}
+
 void CudaEngine::addBody(const DistanceField& field) {
-  memory_.addBody(field);
+  std::vector<unsigned char> apart = memory_.downloaded(apart_);
+  apart.push_back(0);
+  CudaMemory<unsigned char> apart_on_gpu(apart);
   courier_.expectLoads();
-  apart_ = CudaMemory<unsigned char>(memory_.distance_fields.size());
+  memory_.addBody(field);
+  apart_ = std::move(apart_on_gpu);
 }
 
 void CudaEngine::removeBody(std::size_t body) {
@@ -125,9 +133,9 @@ void CudaEngine::addPour(const LocalRegion& region, const PourTimes& times) {
 
 void CudaEngine::expectSand(const LocalRegion& region) { expected_.push_back(windowOf(region, grid_)); }
 
-/// Makes the GPU know the bodies of a run; the placement before it comes first.
-void CudaEngine::sendBodies(std::vector<Placement> placements) {
-  placements.insert(placements.begin(), {0.0, last_placed_});
+/// Makes the GPU know the bodies of a run, and where they were before it.
+void CudaEngine::sendBodies(const std::vector<PlacedBody>& before, std::vector<Placement> placements) {
+  placements.insert(placements.begin(), {0.0, before});
   std::vector<Window> poured_on = expected_;
   for (const auto& pour : memory_.pours) poured_on.push_back(pour.change.window);
   tables_ = makeRunTables(placements, memory_.distance_fields.size(), held_, poured_on, grid_);
@@ -210,7 +218,7 @@ void CudaEngine::launch(const StepRun& run) {
 }
 
 void CudaEngine::placeBodies(const std::vector<PlacedBody>& bodies, int steps) {
-  sendBodies({{0.0, bodies}});
+  sendBodies({}, {{0.0, bodies}});
   StepRun no_steps{};
   no_steps.placed_at = placed_at_.data() + 1;
   no_steps.placements = 1;
@@ -235,7 +243,7 @@ void CudaEngine::start(const StepRun& run, std::vector<Placement> placements) {
   placements_ = std::move(placements);
   StepRun wanted = run;
   if (!memory_.contacts.empty()) {
-    sendBodies(placements_);
+    sendBodies(last_placed_, placements_);
     wanted.placements = static_cast<int>(placements_.size());
     // That of the placement before the run comes first.
     wanted.placed_at = placed_at_.data() + 1;
@@ -253,9 +261,12 @@ StepRun CudaEngine::finish() {
     if (now.placement > run_.placement)
       arePlaced(placements_[static_cast<std::size_t>(now.placement)].bodies);
     StepRun onwards = now;
-    onwards.placed_at = tables_.placed_at.data() + 1;
+    onwards.placed_at = now.placements > 0 ? tables_.placed_at.data() + 1 : nullptr;
     onwards.most_steps = std::numeric_limits<std::uint64_t>::max();
-    if (!onwards.goesOn()) return now;
+    if (!onwards.goesOn()) {
+      onwards.placed_at = nullptr;
+      return onwards;
+    }
     launch(now);
   }
 }
@@ -289,9 +300,7 @@ const Fields& CudaEngine::collectFields() { return courier_.collect(); }
 double CudaEngine::overlap(const std::vector<PlacedBody>& bodies) {
   if (memory_.contacts.empty()) return 0.0;
   if (overlap_.size() == 0) overlap_ = CudaMemory<float>(grid_.cells());
-  const std::vector<PlacedBody> before = std::exchange(last_placed_, bodies);
-  sendBodies({});
-  last_placed_ = before;
+  sendBodies(bodies, {});
   checkCuda(cudaMemsetAsync(overlap_.data(), 0, grid_.cells() * sizeof(float), stream_), "clear memory");
   if (!tables_.blocks.empty()) {
     measureOverlap<<<static_cast<unsigned>(tables_.blocks.size()), kBlock, 0, stream_>>>(
@@ -321,6 +330,11 @@ std::string cudaUnavailable() {
   const cudaError_t status = cudaGetDeviceCount(&devices);
   if (status != cudaSuccess) return cudaGetErrorString(status);
   if (devices == 0) return "no CUDA-capable device is detected";
+  int device = 0;
+  int cooperative = 0;
+  cudaGetDevice(&device);
+  cudaDeviceGetAttribute(&cooperative, cudaDevAttrCooperativeLaunch, device);
+  if (cooperative == 0) return "the GPU has no cooperative launches";
   // A GPU older than those that the kernels were compiled for is found out here, not at the first launch.
   cudaFuncAttributes attributes{};
   const cudaError_t kernel = cudaFuncGetAttributes(&attributes, takeStepsOnGpu<false, false>);
@@ -328,8 +342,10 @@ std::string cudaUnavailable() {
 }
 
 std::string cudaDeviceName() {
+  int device = 0;
   cudaDeviceProp properties{};
-  checkCuda(cudaGetDeviceProperties(&properties, 0), "read the device's name");
+  checkCuda(cudaGetDevice(&device), "tell which GPU is in use");
+  checkCuda(cudaGetDeviceProperties(&properties, device), "read the GPU's name");
   return properties.name;
 }
 

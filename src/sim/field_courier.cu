@@ -58,12 +58,14 @@ FieldCourier::FieldCourier(const Grid& grid, const Fields& fields)
       tiles_(DueTiles::tilesAcross(grid.columns) * DueTiles::tilesUp(grid.rows)),
       fields_(fields) {}
 
+FieldCourier::~FieldCourier() {
+  cudaStreamSynchronize(stream_);  // a copy that nobody waited for still uses the memory
+}
+
 void FieldCourier::expectLoads() {
   if (!fields_.load.empty()) return;
   collect();
-  for (std::vector<float>* values :
-       {&fields_.load, &fields_.load_elevation, &fields_.load_momentum_x, &fields_.load_momentum_y})
-    values->assign(grid_.cells(), 0.0f);
+  fields_.addLoads();
   values_ = CudaMemory<float>(0);
 }
 
@@ -72,10 +74,10 @@ void FieldCourier::prepare() {
   if (values_.size() > 0) return;
   const std::size_t floats = static_cast<std::size_t>(floatsOfTile());
   const std::size_t at_once = static_cast<std::size_t>(std::min(tiles_, kTilesAtOnce));
-  values_ = CudaMemory<float>(floats * static_cast<std::size_t>(tiles_));
   numbers_ = CudaMemory<int>(static_cast<std::size_t>(tiles_));
   values_here_ = PinnedMemory<float>(floats * at_once);
   numbers_here_ = PinnedMemory<int>(at_once);
+  values_ = CudaMemory<float>(floats * static_cast<std::size_t>(tiles_));
 }
 
 void FieldCourier::request(const DueTiles& tiles, const FieldSources& sources, const CudaStream& stream) {
@@ -114,19 +116,15 @@ const Fields& FieldCourier::collect() {
 }
 
 void FieldCourier::unpack(int tile, const float* values) {
-  const int across = DueTiles::tilesAcross(grid_.columns);
-  const int i = tile % across * kBlockColumns;
-  const int j = tile / across * kBlockRows;
-  const std::size_t columns = static_cast<std::size_t>(std::min(kBlockColumns, grid_.columns - i));
-  const int rows = std::min(kBlockRows, grid_.rows - j);
+  const Window cells = DueTiles::cellsOf(tile, grid_.columns, grid_.rows);
   std::vector<float>* const all[] = {
       &fields_.depth,           &fields_.momentum_x,      &fields_.momentum_y,    &fields_.load,
       &fields_.load_momentum_x, &fields_.load_momentum_y, &fields_.load_elevation};
   const int fields = floatsOfTile() / kBlockThreads;
   for (int field = 0; field < fields; ++field) {
-    for (int row = 0; row < rows; ++row) {
-      std::copy_n(values + field * kBlockThreads + row * kBlockColumns, columns,
-                  all[field]->data() + grid_.index(i, j + row));
+    for (int row = 0; row < cells.rows(); ++row) {
+      std::copy_n(values + field * kBlockThreads + row * kBlockColumns, cells.columns(),
+                  all[field]->data() + grid_.index(cells.column_begin, cells.row_begin + row));
     }
   }
 }

@@ -227,12 +227,8 @@ class Simulator::Implementation {
     finish();
     requireFit(snapshot);
     Fields fields = snapshot.fields;
-    if (!bodies_.empty() && fields.load.empty()) {
-      // Saved when there was no body yet.
-      for (std::vector<float>* values :
-           {&fields.load, &fields.load_elevation, &fields.load_momentum_x, &fields.load_momentum_y})
-        values->assign(grid_.cells(), 0.0f);
-    }
+    // Saved when there was no body yet.
+    if (!bodies_.empty() && fields.load.empty()) fields.addLoads();
     for (std::vector<float>* momentum :
          {&fields.momentum_x, &fields.momentum_y, &fields.load_momentum_x, &fields.load_momentum_y}) {
       // Negative zeros would be bits that a step changes.
@@ -332,6 +328,7 @@ class Simulator::Implementation {
   }
 
   void appendPose(std::size_t body, double time, const Eigen::Isometry3d& pose) {
+    finish();
     Body& moved = present(body);
     placed_anew_ = placed_anew_ || moved.motion.empty();
     appendTo(moved.motion, moved.name, time, pose);
@@ -374,8 +371,8 @@ class Simulator::Implementation {
     run.steps_since_placed = steps_since_placed_;
     run.progress = progress_;
     schedule();
-    runs_ = true;
     engine_->start(run, placementsOf(schedule_));
+    runs_ = true;
   }
 
   void take(const StepRun& run) {

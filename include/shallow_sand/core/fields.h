@@ -19,6 +19,12 @@ struct Fields {
   std::vector<float> load_momentum_x{};  ///< [m²/s]
   std::vector<float> load_momentum_y{};
 
+  /// There are loads from now on, of no sand.
+  void addLoads() {
+    for (std::vector<float>* values : {&load, &load_elevation, &load_momentum_x, &load_momentum_y})
+      values->assign(depth.size(), 0.0f);
+  }
+
   /// Where the sand that one sees from above ends. [m]
   float surface(std::size_t cell) const {
     return hasLoad(cell) ? load_elevation[cell] + load[cell] : bed[cell] + depth[cell];

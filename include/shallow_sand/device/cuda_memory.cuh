@@ -141,8 +141,10 @@ class SentList {
   void send(const std::vector<T>& values, const CudaStream& stream) {
     if (values.size() > memory_.size()) {
       const std::size_t room = 2 * values.size();
-      memory_ = CudaMemory<T>(room);
-      pinned_ = PinnedMemory<T>(room);
+      CudaMemory<T> memory(room);
+      PinnedMemory<T> pinned(room);
+      memory_ = std::move(memory);
+      pinned_ = std::move(pinned);
     }
     if (values.empty()) return;
     std::memcpy(pinned_.data(), values.data(), values.size() * sizeof(T));

@@ -41,7 +41,7 @@ struct Window {
     return i >= column_begin && i < column_end && j >= row_begin && j < row_end;
   }
   std::size_t cells() const { return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()); }
-  bool empty() const { return columns() <= 0 || rows() <= 0; }
+  SHALLOW_SAND_HOST_DEVICE bool empty() const { return columns() <= 0 || rows() <= 0; }
 
   /// Whether any cell is in one of the windows, too.
   bool overlapsAny(const std::vector<Window>& windows) const {
@@ -59,7 +59,7 @@ struct Window {
             row_end > other.row_end ? row_end : other.row_end};
   }
   /// The cells that are in both; empty if there are none.
-  Window overlap(const Window& other) const {
+  SHALLOW_SAND_HOST_DEVICE Window overlap(const Window& other) const {
     return {column_begin > other.column_begin ? column_begin : other.column_begin,
             row_begin > other.row_begin ? row_begin : other.row_begin,
             column_end < other.column_end ? column_end : other.column_end,

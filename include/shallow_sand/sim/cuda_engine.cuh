@@ -16,6 +16,7 @@ namespace shallow_sand {
 class CudaEngine : public Engine {
  public:
   explicit CudaEngine(const EngineStart& start);
+  ~CudaEngine() override;
 
   void addBody(const DistanceField& field) override;
   void removeBody(std::size_t body) override;
@@ -49,7 +50,7 @@ class CudaEngine : public Engine {
     CudaMemory<unsigned char> changed;
   };
 
-  void sendBodies(std::vector<Placement> placements);
+  void sendBodies(const std::vector<PlacedBody>& before, std::vector<Placement> placements);
   void arePlaced(const std::vector<PlacedBody>& bodies);
   BodiesOnGpu bodiesOnGpu();
   GpuRun runOnGpu();

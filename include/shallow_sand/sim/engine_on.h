@@ -52,6 +52,7 @@ class EngineOn : public SteppedEngine {
     run_.placements = static_cast<int>(times.size());
     RunningSand sand{*this, placements};
     takeSteps(sand, run_);
+    run_.placed_at = nullptr;
   }
   StepRun finish() override { return run_; }
 

@@ -19,11 +19,15 @@ struct FieldSources {
 class FieldCourier {
  public:
   FieldCourier(const Grid& grid, const Fields& fields);
+  ~FieldCourier();
 
   /// From now on there are loads, too.
   void expectLoads();
-  /// The host's fields become these; the GPU has the same.
-  void reset(const Fields& fields) { fields_ = fields; }
+  /// The GPU has other fields now: all tiles have changed, and so has the bed, which never leaves.
+  void reset(const Fields& fields) {
+    collect();
+    fields_ = fields;
+  }
   /// Gathers what has changed after all that was put into the stream before.
   void request(const DueTiles& tiles, const FieldSources& sources, const CudaStream& stream);
   /// Waits for what was requested.

@@ -23,7 +23,7 @@ struct CrowdedWindow {
 struct BodyReach {
   Window around;   ///< its columns and one more on each side; empty if it is nowhere over the grid
   float height;    ///< see reachOf [m]
-  bool poured_on;  ///< sand falls on it
+  bool poured_on;  ///< sand may fall on it
 };
 
 /// The bodies of a run of steps, laid out for kernels: for each placement, one entry for each body that there
@@ -43,6 +43,7 @@ struct RunTables {
 };
 
 /// @param placements with what was before the run in front
+/// @param bodies how many there ever were
 /// @param held windows that bodies have touched before, too
 /// @param poured_on windows in which sand may fall
 RunTables makeRunTables(const std::vector<Placement>& placements, std::size_t bodies,

@@ -85,8 +85,9 @@ class SandMemory {
         left_over_edges(2 * static_cast<std::size_t>(grid.columns + grid.rows), 0.0) {}
 
   void addBody(const DistanceField& field) {
-    distance_fields.push_back(uploaded(field.distance));
+    Memory<float> distance = uploaded(field.distance);
     if (contacts.empty()) contacts.emplace_back(bed);
+    distance_fields.push_back(std::move(distance));
   }
   void removeBody(std::size_t body) { distance_fields[body] = Memory<float>(0); }
 
@@ -167,15 +168,16 @@ class SandMemory {
   }
 
   void restore(const Fields& fields, const ContactSnapshot& snapshot) {
-    bed = uploaded(fields.bed);
+    set(bed, fields.bed);
     std::vector<Cover> cover;
     for (const float value : snapshot.cover) cover.push_back(static_cast<Cover>(static_cast<int>(value)));
     Fields layers = fields;
     if (!snapshot.windows.empty()) swapWhereTouching(cover, layers);
-    state = uploadedState(layers);
-    next = uploadedState(layers);
+    for (State* layer : {&state, &next}) set(*layer, layers.depth, layers.momentum_x, layers.momentum_y);
     if (contacts.empty()) return;
-    contacts.front() = Contacts(bed);
+    // Given back first: there may not be room for both.
+    contacts.clear();
+    contacts.emplace_back(bed);
     if (!snapshot.windows.empty()) restoreContacts(layers, snapshot, cover);
   }
 
@@ -257,18 +259,29 @@ class SandMemory {
     return std::accumulate(values.begin(), values.end(), 0.0);
   }
 
+  template <class T>
+  static void set(Memory<T>& memory, const std::vector<T>& values) {
+    memory.upload(values.data(), values.size());
+  }
+  static void set(State& layer, const std::vector<float>& h, const std::vector<float>& hu,
+                  const std::vector<float>& hv) {
+    set(layer.depth, h);
+    set(layer.momentum_x, hu);
+    set(layer.momentum_y, hv);
+  }
+
   void restoreContacts(const Fields& layers, const ContactSnapshot& snapshot,
                        const std::vector<Cover>& cover) {
     Contacts& c = contacts.front();
-    c.clearance = uploaded(snapshot.clearance);
-    c.top = uploaded(layers.load_elevation);
-    c.headroom = uploaded(snapshot.headroom);
-    c.length = uploaded(snapshot.length);
-    c.velocity_x = uploaded(snapshot.velocity_x);
-    c.velocity_y = uploaded(snapshot.velocity_y);
-    c.velocity_z = uploaded(snapshot.velocity_z);
-    c.cover = uploaded(cover);
-    c.hidden = {uploaded(layers.load), uploaded(layers.load_momentum_x), uploaded(layers.load_momentum_y)};
+    set(c.clearance, snapshot.clearance);
+    set(c.top, layers.load_elevation);
+    set(c.headroom, snapshot.headroom);
+    set(c.length, snapshot.length);
+    set(c.velocity_x, snapshot.velocity_x);
+    set(c.velocity_y, snapshot.velocity_y);
+    set(c.velocity_z, snapshot.velocity_z);
+    set(c.cover, cover);
+    set(c.hidden, layers.load, layers.load_momentum_x, layers.load_momentum_y);
     std::vector<float> visible_bed = layers.bed;
     std::vector<float> ceiling = snapshot.clearance;
     for (std::size_t k = 0; k < cover.size(); ++k) {
@@ -276,8 +289,8 @@ class SandMemory {
       visible_bed[k] = layers.load_elevation[k];
       ceiling[k] = snapshot.headroom[k];
     }
-    c.visible_bed = uploaded(visible_bed);
-    c.ceiling = uploaded(ceiling);
+    set(c.visible_bed, visible_bed);
+    set(c.ceiling, ceiling);
   }
 
   double edited_in_ = 0.0;  // depth, summed over cells [m]

@@ -275,10 +275,7 @@ class SandOnGpu {
                            cells.column_end + DueTiles::kReach, cells.row_end + DueTiles::kReach};
       bool is_near = false;
       for (int w = 0; w < bodies_.window_count; ++w) {
-        const Window& window = bodies_.windows[w].cells;
-        is_near = is_near ||
-                  (window.column_begin < reached.column_end && reached.column_begin < window.column_end &&
-                   window.row_begin < reached.row_end && reached.row_begin < window.row_end);
+        is_near = is_near || !reached.overlap(bodies_.windows[w].cells).empty();
       }
       tiles_.is_near[tile] = is_near ? 1 : 0;
       if (is_near && tiles_.isDue(tile, here_.number))
@@ -370,10 +367,10 @@ class SandOnGpu {
   /// Of a column each thread, along x or y of each window.
   template <class Function>
   __device__ void forEachLine(bool columns, const Function& function) const {
-    for (int w = static_cast<int>(blockIdx.x); w < bodies_.window_count; w += static_cast<int>(gridDim.x)) {
+    for (int w = 0; w < bodies_.window_count; ++w) {
       const Window& window = bodies_.windows[w].cells;
       const int lines = columns ? window.columns() : window.rows();
-      for (int k = static_cast<int>(threadIdx.y * kBlockColumns + threadIdx.x); k < lines; k += kBlockThreads)
+      for (int k = static_cast<int>(team_.thread()); k < lines; k += static_cast<int>(team_.threads()))
         function(k, window);
     }
     team_.wait();

@@ -131,7 +131,8 @@ class Simulator {
   /// The fields as they are now start on their way from the GPU. What has changed is sent, while the sand may
   /// go on.
   void requestFields();
-  /// The fields that were requested the last time; valid until they are requested again.
+  /// The fields that were requested the last time; valid until anything else is asked for but the time and
+  /// the progress.
   const Fields& collectFields();
   Ledger ledger() const;
   const Progress& progress() const;

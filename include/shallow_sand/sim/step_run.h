@@ -118,7 +118,7 @@ struct StepRun {
     progress.cell_updates += static_cast<std::uint64_t>(cells);
     time = timeAfterStep();
     trial = kHeadroom * boundFor(speed);
-    steps_since_placed += 1;
+    steps_since_placed += placements > 0 ? 1 : 0;
     moved = true;
   }
   SHALLOW_SAND_HOST_DEVICE void bodiesMet() {

@@ -3,6 +3,7 @@
 #include "shallow_sand/device/grid_team.cuh"
 #include "shallow_sand/device/window.h"
 #include "shallow_sand/solver/step.h"
+#include "shallow_sand/solver/tiles.h"
 
 namespace shallow_sand {
 
@@ -14,8 +15,7 @@ using StepNumber = unsigned long long;
 /// empties. A tile is as large as a block; the last ones of a row or column may be smaller.
 struct DueTiles {
   static constexpr int kLists = 3;
-  /// How many cells away a cell can feel another in one step.
-  static constexpr int kReach = 2;
+  static constexpr int kReach = Tiles::kReach;
   static constexpr StepNumber kNever = ~0ULL;
 
   int columns;  ///< of cells
@@ -44,12 +44,13 @@ struct DueTiles {
   __device__ bool isDue(int tile, StepNumber step) const { return lastListed(listOf(step), tile) == step; }
   __device__ void empty(int list) const { lengths[list] = cells[list] = crowded[list] = 0; }
 
-  /// The cells of a tile.
-  __device__ Window cellsOf(int tile) const {
-    const int i = tile % across * kBlockColumns;
-    const int j = tile / across * kBlockRows;
-    return {i, j, min(i + kBlockColumns, columns), min(j + kBlockRows, rows)};
+  /// The cells of a tile of a map of so many columns and rows.
+  static __host__ __device__ Window cellsOf(int tile, int columns, int rows) {
+    const int i = tile % tilesAcross(columns) * kBlockColumns;
+    const int j = tile / tilesAcross(columns) * kBlockRows;
+    return Window{i, j, i + kBlockColumns, j + kBlockRows}.overlap({0, 0, columns, rows});
   }
+  __device__ Window cellsOf(int tile) const { return cellsOf(tile, columns, rows); }
 
   /// Lists a tile for a step, once.
   __device__ void add(int tile, StepNumber step) const {
