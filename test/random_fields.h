@@ -49,6 +49,10 @@ inline void expectSameBits(const Fields& a, const Fields& b) {
   EXPECT_TRUE(sameBits(a.depth, b.depth));
   EXPECT_TRUE(sameBits(a.momentum_x, b.momentum_x));
   EXPECT_TRUE(sameBits(a.momentum_y, b.momentum_y));
+  EXPECT_TRUE(sameBits(a.load, b.load));
+  EXPECT_TRUE(sameBits(a.load_elevation, b.load_elevation));
+  EXPECT_TRUE(sameBits(a.load_momentum_x, b.load_momentum_x));
+  EXPECT_TRUE(sameBits(a.load_momentum_y, b.load_momentum_y));
 }
 
 /// A size in cells.

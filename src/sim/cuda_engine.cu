@@ -69,13 +69,6 @@ int mostBlocks(TakeSteps kernel) {
   return multiprocessors * blocks;
 }
 
-/// Steps of a launch; a GPU that also shows a desktop is not taken from it for longer.
-std::uint64_t stepsOfLaunch(const Grid& grid) {
-  constexpr std::uint64_t kCells = 1000000000;
-  constexpr std::uint64_t kMost = 20000;
-  return std::min(kMost, std::max<std::uint64_t>(16, kCells / grid.cells()));
-}
-
 }  // namespace
 
 CudaEngine::TileMemory::TileMemory(const Grid& grid)
@@ -96,8 +89,9 @@ DueTiles CudaEngine::TileMemory::tiles(const Grid& grid) {
           speeds.data(),  is_near.data(), changed.data()};
 }
 
-CudaEngine::CudaEngine(const EngineStart& start)
+CudaEngine::CudaEngine(const EngineStart& start, std::uint64_t steps_at_once)
     : grid_(start.grid),
+      steps_at_once_(steps_at_once),
       with_slopes_(start.with_slopes),
       displacement_(start.displacement),
       memory_(start),
@@ -202,7 +196,7 @@ GpuRun CudaEngine::runOnGpu() {
 
 void CudaEngine::launch(const StepRun& run) {
   run_ = run;
-  run_.most_steps = run.progress.steps + stepsOfLaunch(grid_);
+  run_.most_steps = run.progress.steps + steps_at_once_;
   GpuRun run_on_gpu = runOnGpu();
   const TakeSteps kernel = kernelFor(!tables_.windows.empty(), with_slopes_);
   const int useful = std::max(tile_memory_.count, static_cast<int>(tables_.wide_blocks.size()));
@@ -321,8 +315,14 @@ void CudaEngine::restore(const Fields& fields, const ContactSnapshot& contacts) 
   apart_ = CudaMemory<unsigned char>(memory_.distance_fields.size());
 }
 
-std::unique_ptr<Engine> makeCudaEngine(const EngineStart& start) {
-  return std::make_unique<CudaEngine>(start);
+std::unique_ptr<Engine> makeCudaEngine(const EngineStart& start, std::uint64_t steps_at_once) {
+  return std::make_unique<CudaEngine>(start, steps_at_once);
+}
+
+std::uint64_t cudaStepsAtOnce(const Grid& grid) {
+  constexpr std::uint64_t kCells = 1000000000;
+  constexpr std::uint64_t kMost = 20000;
+  return std::min(kMost, std::max<std::uint64_t>(16, kCells / grid.cells()));
 }
 
 std::string cudaUnavailable() {

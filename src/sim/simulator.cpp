@@ -164,7 +164,7 @@ class Simulator::Implementation {
 #ifdef SHALLOW_SAND_WITH_CUDA
     if (chosen_.backend == Backend::cuda) {
       try {
-        engine_ = makeCudaEngine(start);
+        engine_ = makeCudaEngine(start, cudaStepsAtOnce(grid_));
       } catch (const std::runtime_error& reason) {
         chosen_ = withoutGpu(parameters_.backend, parameters_.threads, reason.what());
       }

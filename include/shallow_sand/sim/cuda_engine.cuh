@@ -15,7 +15,7 @@ namespace shallow_sand {
 /// and when sand makes way for bodies: the host hears nothing of it before its end.
 class CudaEngine : public Engine {
  public:
-  explicit CudaEngine(const EngineStart& start);
+  CudaEngine(const EngineStart& start, std::uint64_t steps_at_once);
   ~CudaEngine() override;
 
   void addBody(const DistanceField& field) override;
@@ -58,6 +58,7 @@ class CudaEngine : public Engine {
   void touch(const Window& cells);
 
   Grid grid_;
+  std::uint64_t steps_at_once_;
   bool with_slopes_;
   bool displacement_;
   CudaStream stream_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -83,8 +84,11 @@ std::unique_ptr<SteppedEngine> makeHostEngine(const EngineStart& start, int thre
                                               InstructionSet instructions);
 
 #ifdef SHALLOW_SAND_WITH_CUDA
+/// @param steps_at_once after which the GPU is free for others for a moment, however long the run
 /// @throws std::runtime_error with CUDA's own words
-std::unique_ptr<Engine> makeCudaEngine(const EngineStart& start);
+std::unique_ptr<Engine> makeCudaEngine(const EngineStart& start, std::uint64_t steps_at_once);
+/// So many that a GPU which also shows a desktop is not taken from it for long.
+std::uint64_t cudaStepsAtOnce(const Grid& grid);
 /// Why CUDA cannot be used on this machine; empty if it can.
 std::string cudaUnavailable();
 /// Name of the current CUDA device.

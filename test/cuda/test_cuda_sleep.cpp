@@ -1,0 +1,60 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "parity.h"
+
+namespace shallow_sand {
+namespace {
+
+using CudaSleep = CudaTest;
+
+/// Sand at rest, as in test/solver/test_same_bits.cpp, but small; with a heap on it that stands four columns
+/// of tiles wide in one corner if there is one.
+RandomScene sandAtRest(std::mt19937& random, bool with_heap) {
+  RandomSand sand = heldSand(random, 100, 24, uniform(random, 25.0, 35.0));
+  const Grid grid = sand.parameters.grid.grid();
+  const double radius = uniform(random, 3.0, 4.0);
+  for (int j = 0; with_heap && j < grid.rows; ++j) {
+    for (int i = 0; i < grid.columns; ++i) {
+      if (std::hypot(i - 16, j - 12) < radius)
+        sand.depth[grid.index(i, j)] += static_cast<float>(2.0 * radius) * grid.spacing;
+    }
+  }
+  RandomScene scene;
+  scene.frame = std::sqrt(grid.spacing / 9.81);
+  sand.parameters.solver.reconstruction =
+      random() % 2 == 0 ? Reconstruction::constant : Reconstruction::minmod;
+  scene.sand = std::move(sand);
+  return scene;
+}
+
+TEST_F(CudaSleep, AHeapSpreadsOnSandOfWhichMuchSleeps) {
+  std::mt19937 random = seededGenerator();
+  const RandomScene scene = sandAtRest(random, true);
+  Pair pair(scene);
+  pair.advance(scene.frame, 6);
+  EXPECT_FALSE(sameBits(pair.cuda.fields().depth, scene.sand.depth));
+  const std::uint64_t cells = scene.sand.depth.size();
+  // The first step computes all.
+  EXPECT_GE(pair.cuda.progress().cell_updates, cells);
+  EXPECT_LT(pair.cuda.progress().cell_updates, pair.steps() * cells * 6 / 10);
+  expectSteps(pair.steps(), 6);
+}
+
+TEST_F(CudaSleep, WhereNothingMovesNoCellIsComputed) {
+  std::mt19937 random = seededGenerator();
+  const RandomScene scene = sandAtRest(random, false);
+  Pair pair(scene);
+  pair.advance(scene.frame, 1);
+  const Progress before = pair.cuda.progress();
+  EXPECT_GT(before.cell_updates, 0u);
+  pair.advance(scene.frame, 2);
+  EXPECT_GT(pair.cuda.progress().steps, before.steps);
+  EXPECT_EQ(pair.cuda.progress().cell_updates, before.cell_updates);
+  EXPECT_EQ(pair.cuda.activeCells(), 0u);
+}
+
+}  // namespace
+}  // namespace shallow_sand
