@@ -138,7 +138,6 @@ void CudaEngine::sendBodies(const std::vector<PlacedBody>& before, std::vector<P
   placed_at_.send(tables_.placed_at, stream_);
   views_.send(tables_.views, stream_);
   reaches_.send(tables_.reaches, stream_);
-  still_.send(tables_.still, stream_);
   windows_.send(tables_.windows, stream_);
   blocks_.send(tables_.blocks, stream_);
   wide_windows_.send(tables_.wide_windows, stream_);
@@ -153,7 +152,6 @@ BodiesOnGpu CudaEngine::bodiesOnGpu() {
   return {static_cast<int>(memory_.distance_fields.size()),
           views_.data(),
           reaches_.data(),
-          still_.data(),
           apart_.data(),
           displacement_,
           windows_.data(),

@@ -38,19 +38,14 @@ void addPlacement(const Placement& placement, std::size_t bodies, const std::vec
   const std::size_t begin = tables.views.size();
   tables.placed_at.push_back(placement.time);
   tables.views.resize(begin + bodies, nowhere());
-  tables.reaches.resize(begin + bodies, BodyReach{Window{}, 0.0f, false});
-  int still = std::numeric_limits<int>::max();
+  tables.reaches.resize(begin + bodies, BodyReach{Window{}, 0.0f, false, 0});
   for (const PlacedBody& body : placement.bodies) {
     const Window around = body.window.grown(1, grid);
     tables.views[begin + body.body] = body.view;
-    tables.reaches[begin + body.body] = {around, reachOf(body, grid), around.overlapsAny(poured_on)};
-    still = std::min(still, body.still);
+    const bool has_come = begin == 0 || tables.reaches[begin - bodies + body.body].around.empty();
+    tables.reaches[begin + body.body] = {around, reachOf(body, grid), around.overlapsAny(poured_on),
+                                         has_come ? 0 : body.still};
   }
-  for (std::size_t k = 0; k < bodies && begin > 0; ++k) {
-    const bool was = !tables.reaches[begin - bodies + k].around.empty();
-    if (was != !tables.reaches[begin + k].around.empty()) still = 0;
-  }
-  tables.still.push_back(still);
 }
 
 /// For each body, the window around all of its columns in the run.

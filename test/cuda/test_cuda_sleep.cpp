@@ -56,5 +56,21 @@ TEST_F(CudaSleep, WhereNothingMovesNoCellIsComputed) {
   EXPECT_EQ(pair.cuda.activeCells(), 0u);
 }
 
+/// Bodies that hover, and move, are no reason to compute sand.
+TEST_F(CudaSleep, UnderBodiesThatHoverFarAboveNoCellIsComputed) {
+  std::mt19937 random = seededGenerator();
+  RandomScene scene = sandAtRest(random, false);
+  scene.bodies.push_back(randomBody(random, scene.sand.parameters.grid.spacing));
+  moveThroughSand(random, scene.sand, 3.0 * scene.frame, scene.bodies.back());
+  lift(scene, scene.bodies.back());
+  Pair pair(scene);
+  pair.advance(scene.frame, 1);
+  const Progress before = pair.cuda.progress();
+  pair.advance(scene.frame, 2);
+  EXPECT_GT(pair.cuda.progress().steps, before.steps);
+  EXPECT_EQ(pair.cpu.progress().cell_updates, before.cell_updates);
+  EXPECT_EQ(pair.cuda.progress().cell_updates, before.cell_updates);
+}
+
 }  // namespace
 }  // namespace shallow_sand

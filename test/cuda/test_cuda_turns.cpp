@@ -112,6 +112,32 @@ TEST_F(CudaTurns, WhateverIsAskedWaits) {
   }
 }
 
+/// A body's way is told while the run goes on in which it has no pose yet, or rests.
+TEST_F(CudaTurns, PosesThatAreAppendedWhileItRunsAreForLater) {
+  RandomScene scene = anyScene();
+  const std::vector<PoseKey> ways[] = {scene.bodies[0].motion, scene.bodies[1].motion};
+  scene.bodies[0].motion.resize(1);
+  scene.bodies[1].motion.clear();
+  const auto append = [&](Simulator& simulator) {
+    for (const std::size_t body : {0, 1}) {
+      for (std::size_t key = 1; key < 3; ++key)
+        simulator.appendPose(body, (static_cast<double>(key) - 0.5) * scene.frame, ways[body][key].pose);
+    }
+  };
+  Simulator waited = simulatorOn(Backend::cpu, scene);
+  waited.advanceTo(scene.frame);
+  append(waited);
+  waited.advanceTo(2.0 * scene.frame);
+  for (const Backend backend : {Backend::cpu, Backend::cuda}) {
+    SCOPED_TRACE(toString(backend));
+    Simulator begun = simulatorOn(backend, scene);
+    begun.beginAdvanceTo(scene.frame);
+    append(begun);
+    begun.beginAdvanceTo(2.0 * scene.frame);
+    expectSame(waited, begun);
+  }
+}
+
 /// What is thrown if this is asked after a run was begun; empty if nothing is.
 std::string thrown(Backend backend, const RandomScene& scene, const Question& question) {
   Simulator simulator = simulatorOn(backend, scene);

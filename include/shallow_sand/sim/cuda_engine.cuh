@@ -75,7 +75,6 @@ class CudaEngine : public Engine {
   SentList<double> placed_at_;
   SentList<BodyView> views_;
   SentList<BodyReach> reaches_;
-  SentList<int> still_;
   SentList<CrowdedWindow> windows_;
   SentList<CellBlock> blocks_;
   SentList<Window> wide_windows_;

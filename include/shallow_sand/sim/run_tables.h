@@ -19,11 +19,12 @@ struct CrowdedWindow {
   int bins_across;
 };
 
-/// What decides whether a body in a placement is near sand.
+/// What decides whether a body in a placement is near sand, and has moved there.
 struct BodyReach {
   Window around;   ///< its columns and one more on each side; empty if it is nowhere over the grid
   float height;    ///< see reachOf [m]
   bool poured_on;  ///< sand may fall on it
+  int still;       ///< placements before this one in which it has not moved, come or gone
 };
 
 /// The bodies of a run of steps, laid out for kernels: for each placement, one entry for each body that there
@@ -32,8 +33,6 @@ struct RunTables {
   std::vector<double> placed_at;  ///< of the placements [s]
   std::vector<BodyView> views;    ///< the distance is null, as in PlacedBody
   std::vector<BodyReach> reaches;
-  /// For each placement, placements before it in which no body has moved, none has come or gone.
-  std::vector<int> still;
   std::vector<CrowdedWindow> windows;  ///< do not overlap, and hold all columns that bodies touch
   std::vector<CellBlock> blocks;       ///< of the windows
   std::vector<Window> wide_windows;    ///< do not overlap, and hold all columns that sand is pushed to

@@ -18,8 +18,6 @@ struct BodiesOnGpu {
   /// These are lists of lists: for each placement, from that before the run on, one for each body.
   const BodyView* views;
   const BodyReach* reaches;
-  /// For each placement, likewise: placements before it in which no body has moved, none has come or gone.
-  const int* still;
   unsigned char* apart;  ///< of each body, whether it is far above the sand
   bool displacement;
   const CrowdedWindow* windows;  ///< that hold all columns bodies touch, and have touched
@@ -320,17 +318,19 @@ class SandOnGpu {
     return __syncthreads_or(found ? 1 : 0) != 0;
   }
 
-  /// Decides which bodies are apart. Returns whether that is not what it was, or bodies have moved since so
+  /// Decides which bodies are apart. Returns whether that is not what it was, or others have moved since so
   /// many placements.
   __device__ bool isMoved(int since) {
     bool changed = false;
     for (int body = static_cast<int>(blockIdx.x); body < bodies_.count; body += static_cast<int>(gridDim.x)) {
-      const unsigned char apart = isNearSand(reaches()[body]) ? 0 : 1;
+      const BodyReach& reach = reaches()[body];
+      const unsigned char apart = isNearSand(reach) ? 0 : 1;
       if (threadIdx.x != 0 || threadIdx.y != 0) continue;
-      changed = changed || bodies_.apart[body] != apart;
+      const bool moved = apart == 0 && reach.still <= since;
+      changed = changed || moved || bodies_.apart[body] != apart;
       bodies_.apart[body] = apart;
     }
-    return team_.any(changed ? 1 : 0) != 0 || bodies_.still[here_.placement + 1] <= since;
+    return team_.any(changed ? 1 : 0) != 0;
   }
 
   __device__ bool sandComesToBodiesApart() {
