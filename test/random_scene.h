@@ -49,6 +49,27 @@ inline RandomScene randomScene(std::mt19937& random, RandomSand sand, int pours,
   return scene;
 }
 
+/// A column of sand on what there is, twice as high as its radius [m].
+inline void addHeap(RandomSand& sand, const Eigen::Vector2d& place, double radius) {
+  const Grid grid = sand.parameters.grid.grid();
+  for (int j = 0; j < grid.rows; ++j) {
+    for (int i = 0; i < grid.columns; ++i) {
+      if (std::hypot(grid.x(i) - place.x(), grid.y(j) - place.y()) < radius)
+        sand.depth[grid.index(i, j)] += static_cast<float>(2.0 * radius);
+    }
+  }
+}
+
+/// Sand alone, between walls, with either reconstruction.
+inline RandomScene sceneOf(std::mt19937& random, RandomSand sand) {
+  RandomScene scene;
+  scene.frame = std::sqrt(sand.parameters.grid.spacing / 9.81);
+  sand.parameters.solver.reconstruction =
+      random() % 2 == 0 ? Reconstruction::constant : Reconstruction::minmod;
+  scene.sand = std::move(sand);
+  return scene;
+}
+
 /// The scene with some of its parameters changed.
 inline Simulator simulatorOf(const RandomScene& scene, const SimulatorParameters& parameters) {
   Simulator simulator(parameters, scene.sand.bed, scene.sand.depth, scene.sand.material);

@@ -281,6 +281,11 @@ void CudaEngine::touch(const Window& cells) {
   checkCuda(cudaGetLastError(), "wake the sand");
 }
 
+Fields CudaEngine::fields() {
+  requestFields();
+  return collectFields();
+}
+
 void CudaEngine::requestFields() {
   FieldSources sources{memory_.state.layer(), {}, nullptr};
   if (!memory_.contacts.empty()) sources = {{}, memory_.columns(), memory_.contacts.front().top.data()};

@@ -546,10 +546,9 @@ class Simulator::Implementation {
     return placed;
   }
 
-  const Fields& fields() {
+  Fields fields() {
     finish();
-    engine_->requestFields();
-    return engine_->collectFields();
+    return engine_->fields();
   }
 
   Ledger ledger() { return ledgerOf(fields()); }
@@ -641,7 +640,7 @@ double Simulator::bodyOverlap() const { return implementation_->bodyOverlap(); }
 
 double Simulator::maxSpeed() const {
   const SandConstants sand = sandConstants(grid(), parameters().gravity, parameters().material);
-  const Fields& f = implementation_->fields();
+  const Fields f = implementation_->fields();
   double fastest = 0.0;
   const auto look = [&](const std::vector<float>& depth, const std::vector<float>& momentum_x,
                         const std::vector<float>& momentum_y) {
@@ -656,7 +655,7 @@ double Simulator::maxSpeed() const {
 }
 
 std::size_t Simulator::activeCells() const {
-  const Fields& f = implementation_->fields();
+  const Fields f = implementation_->fields();
   std::size_t active = 0;
   for (std::size_t k = 0; k < f.depth.size(); ++k) {
     const bool load_moves = !f.load.empty() && (f.load_momentum_x[k] != 0.0f || f.load_momentum_y[k] != 0.0f);

@@ -20,6 +20,20 @@ class CudaTest : public ::testing::Test {
   }
 };
 
+/// The same, with a scene that holds everything that takes memory of it.
+class CudaSceneTest : public CudaTest {
+ protected:
+  void SetUp() override {
+    CudaTest::SetUp();
+    if (IsSkipped()) return;
+    std::mt19937 random = seededGenerator();
+    scene_ = randomScene(random, randomSand(random, 33, 5), 1, 2);
+    scene_.sand.parameters.backend = Backend::cuda;
+  }
+
+  RandomScene scene_;
+};
+
 inline Simulator simulatorOn(Backend backend, const RandomScene& scene) {
   SimulatorParameters parameters = scene.sand.parameters;
   parameters.backend = backend;

@@ -3,34 +3,19 @@
 #include <string>
 
 #include "cuda_calls.h"
-#include "cuda_device.h"
-#include "random_scene.h"
-#include "random_seed.h"
+#include "parity.h"
 
 namespace shallow_sand {
 namespace {
 
-/// A scene with everything that takes memory of a device.
-class CudaErrors : public ::testing::Test {
+class CudaErrors : public CudaSceneTest {
  protected:
-  void SetUp() override {
-    const std::string missing = cudaDeviceMissing();
-    if (!missing.empty()) GTEST_SKIP() << missing;
-    std::mt19937 random = seededGenerator();
-    scene_ = randomScene(random, randomSand(random, 33, 5), 1, 2);
-  }
   void TearDown() override {
     stopFailing();
     cudaGetLastError();  // forgets it, so that the next test begins as the first does
   }
 
-  Simulator simulatorOn(Backend backend) const {
-    SimulatorParameters parameters = scene_.sand.parameters;
-    parameters.backend = backend;
-    return simulatorOf(scene_, parameters);
-  }
-
-  RandomScene scene_;
+  Simulator simulatorOn(Backend backend) const { return shallow_sand::simulatorOn(backend, scene_); }
 };
 
 void expectOneLineWith(const std::string& part, const std::string& text) {

@@ -1,25 +1,12 @@
 #include <gtest/gtest.h>
 
 #include "cuda_calls.h"
-#include "cuda_device.h"
-#include "random_scene.h"
-#include "random_seed.h"
+#include "parity.h"
 
 namespace shallow_sand {
 namespace {
 
-class CudaMemory : public ::testing::Test {
- protected:
-  void SetUp() override {
-    const std::string missing = cudaDeviceMissing();
-    if (!missing.empty()) GTEST_SKIP() << missing;
-    std::mt19937 random = seededGenerator();
-    scene_ = randomScene(random, randomSand(random, 33, 5), 1, 2);
-    scene_.sand.parameters.backend = Backend::cuda;
-  }
-
-  RandomScene scene_;
-};
+using CudaMemory = CudaSceneTest;
 
 /// Frames of which the fields are collected while the next one runs.
 void run(Simulator& simulator, const RandomScene& scene) {

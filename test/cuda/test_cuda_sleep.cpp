@@ -10,24 +10,13 @@ namespace {
 
 using CudaSleep = CudaTest;
 
-/// Sand at rest, as in test/solver/test_same_bits.cpp, but small; with a heap on it that stands four columns
-/// of tiles wide in one corner if there is one.
+/// Sand at rest, four tiles wide; with a heap at one end, if there is to be one.
 RandomScene sandAtRest(std::mt19937& random, bool with_heap) {
   RandomSand sand = heldSand(random, 100, 24, uniform(random, 25.0, 35.0));
   const Grid grid = sand.parameters.grid.grid();
-  const double radius = uniform(random, 3.0, 4.0);
-  for (int j = 0; with_heap && j < grid.rows; ++j) {
-    for (int i = 0; i < grid.columns; ++i) {
-      if (std::hypot(i - 16, j - 12) < radius)
-        sand.depth[grid.index(i, j)] += static_cast<float>(2.0 * radius) * grid.spacing;
-    }
-  }
-  RandomScene scene;
-  scene.frame = std::sqrt(grid.spacing / 9.81);
-  sand.parameters.solver.reconstruction =
-      random() % 2 == 0 ? Reconstruction::constant : Reconstruction::minmod;
-  scene.sand = std::move(sand);
-  return scene;
+  const double radius = uniform(random, 3.0, 4.0) * grid.spacing;
+  if (with_heap) addHeap(sand, {grid.x(16), grid.y(12)}, radius);
+  return sceneOf(random, std::move(sand));
 }
 
 TEST_F(CudaSleep, AHeapSpreadsOnSandOfWhichMuchSleeps) {

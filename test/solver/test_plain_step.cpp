@@ -82,13 +82,8 @@ void addAll(const RandomScene& scene, SteppedEngine& engine) {
   }
 }
 
-const Fields& fieldsOf(SteppedEngine& engine) {
-  engine.requestFields();
-  return engine.collectFields();
-}
-
 void expectSame(SteppedEngine& plain, SteppedEngine& tiled) {
-  expectSameBits(fieldsOf(plain), fieldsOf(tiled));
+  expectSameBits(plain.fields(), tiled.fields());
   ASSERT_FALSE(::testing::Test::HasFailure());
   ASSERT_EQ(plain.left(), tiled.left());
   ASSERT_EQ(plain.poured(), tiled.poured());

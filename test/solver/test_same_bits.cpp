@@ -76,7 +76,9 @@ void expectValid(const Simulator& simulator) {
     ASSERT_TRUE(std::isfinite(fields.depth[k]) && fields.depth[k] >= 0.0f) << fields.depth[k];
     ASSERT_TRUE(std::isfinite(fields.momentum_x[k]) && std::isfinite(fields.momentum_y[k]));
   }
-  EXPECT_LT(simulator.ledger().error(), 1e-6);
+  // Each step rounds, and bodies that cross the map in a second make a thousand of them.
+  const double steps = static_cast<double>(simulator.progress().steps);
+  EXPECT_LT(simulator.ledger().error(), 1e-6 * std::max(1.0, steps / 400.0));
 }
 
 TEST(SameBits, HoweverTheStepIsComputed) {
@@ -114,18 +116,8 @@ RandomScene heapOnRest(std::mt19937& random) {
   const Grid grid = sand.parameters.grid.grid();
   const double radius = uniform(random, 3.0, 6.0) * grid.spacing;
   const Eigen::Vector2d place = randomPlace(random, grid, 30.0 * grid.spacing);
-  for (int j = 0; j < grid.rows; ++j) {
-    for (int i = 0; i < grid.columns; ++i) {
-      if (std::hypot(grid.x(i) - place.x(), grid.y(j) - place.y()) < radius)
-        sand.depth[grid.index(i, j)] += static_cast<float>(2.0 * radius);
-    }
-  }
-  RandomScene scene;
-  scene.frame = std::sqrt(grid.spacing / 9.81);
-  sand.parameters.solver.reconstruction =
-      random() % 2 == 0 ? Reconstruction::constant : Reconstruction::minmod;
-  scene.sand = std::move(sand);
-  return scene;
+  addHeap(sand, place, radius);
+  return sceneOf(random, std::move(sand));
 }
 
 TEST(SameBits, WhatRestsIsNotComputed) {

@@ -26,6 +26,7 @@ class CudaEngine : public Engine {
   void start(const StepRun& run, std::vector<Placement> placements) override;
   StepRun finish() override;
   double edit(const LocalRegion& region, EditOperation operation, float value) override;
+  Fields fields() override;
   void requestFields() override;
   const Fields& collectFields() override;
   double poured() const override { return memory_.poured(); }

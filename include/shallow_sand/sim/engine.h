@@ -40,6 +40,7 @@ class Engine {
   /// Changes the sand at once. Returns by how much it grew [m³].
   virtual double edit(const LocalRegion& region, EditOperation operation, float value) = 0;
 
+  virtual Fields fields() = 0;
   /// The fields as they are now leave for the host, which has them when they are collected; a run may be
   /// started in between.
   virtual void requestFields() = 0;

@@ -97,19 +97,21 @@ class EngineOn : public SteppedEngine {
     return memory_.book(taken);
   }
 
-  void requestFields() override {
+  Fields fields() override {
     const auto download = [](const Memory<float>& memory) { return Sand::downloaded(memory); };
-    fields_ = {download(memory_.bed), download(memory_.state.depth), download(memory_.state.momentum_x),
-               download(memory_.state.momentum_y)};
-    if (memory_.contacts.empty()) return;
+    Fields fields{download(memory_.bed), download(memory_.state.depth), download(memory_.state.momentum_x),
+                  download(memory_.state.momentum_y)};
+    if (memory_.contacts.empty()) return fields;
     const auto& c = memory_.contacts.front();
-    fields_.load = download(c.hidden.depth);
-    fields_.load_momentum_x = download(c.hidden.momentum_x);
-    fields_.load_momentum_y = download(c.hidden.momentum_y);
-    fields_.load_elevation = download(c.top);
-    memory_.swapWhereTouching(memory_.downloaded(c.cover), fields_);
+    fields.load = download(c.hidden.depth);
+    fields.load_momentum_x = download(c.hidden.momentum_x);
+    fields.load_momentum_y = download(c.hidden.momentum_y);
+    fields.load_elevation = download(c.top);
+    memory_.swapWhereTouching(memory_.downloaded(c.cover), fields);
+    return fields;
   }
-  const Fields& collectFields() override { return fields_; }
+  void requestFields() override { requested_ = fields(); }
+  const Fields& collectFields() override { return requested_; }
 
   double poured() const override { return memory_.poured(); }
   double left() const override { return memory_.left(); }
@@ -397,7 +399,7 @@ class EngineOn : public SteppedEngine {
   Sand memory_;
   StepArguments attempted_{};
   StepRun run_{};
-  Fields fields_;
+  Fields requested_;
   std::vector<BodyView> views_;
   BinLists lists_;
   std::map<std::size_t, Window> standing_;  // columns of each body, when they were placed the last time

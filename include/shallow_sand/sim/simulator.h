@@ -132,7 +132,7 @@ class Simulator {
   /// go on.
   void requestFields();
   /// The fields that were requested the last time; valid until anything else is asked for but the time and
-  /// the progress.
+  /// the progress. On the GPU, whatever needs the fields is a request.
   const Fields& collectFields();
   Ledger ledger() const;
   const Progress& progress() const;
