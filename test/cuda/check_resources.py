@@ -29,12 +29,12 @@ import sys
 import tempfile
 from pathlib import Path
 
-# The first that fits the name counts. A multiprocessor has 65536 registers, a block 128 threads: with 128 registers a thread
-# four blocks are there at once, with 168 three, with 255 two, and one computes while the others wait for memory. With bodies
-# a run of steps holds everything that bodies do to sand.
-REGISTERS = [(re.compile(r"takeStepsOnGpu<false, false>"), 128),
-             (re.compile(r"takeStepsOnGpu<false, true>"), 168),
-             (re.compile(r"takeStepsOnGpu<true, "), 255),
+# The first that fits the mangled name counts (Lb0E is false, Lb1E true: with bodies, with minmod). A multiprocessor has
+# 65536 registers, a block 128 threads: with 128 registers a thread four blocks are there at once, with 168 three, with 255
+# two, and one computes while the others wait for memory. With bodies a run of steps holds everything that they do to sand.
+REGISTERS = [(re.compile("takeStepsOnGpuILb0ELb0E"), 128),
+             (re.compile("takeStepsOnGpuILb0ELb1E"), 168),
+             (re.compile("takeStepsOnGpuILb1E"), 255),
              (re.compile(""), 80)]
 
 Image = collections.namedtuple("Image", "architecture machine_code content")
