@@ -237,10 +237,8 @@ class Simulator::Implementation {
     engine_->restore(fields, snapshot.contacts);
     placed_anew_ = !snapshot.bodies_cleared;
     time_ = snapshot.time;
-    for (Body& body : bodies_) {
-      body.still = 0;
-      if (!body.motion.empty()) notePlaced(body, body.motion.poseAt(time_));
-    }
+    notePlaced(instantAt(time_, nullptr));
+    for (Body& body : bodies_) body.still = 0;
     steps_since_placed_ = 0;
     trial_ = snapshot.next_step;
     progress_ = snapshot.progress;
@@ -380,16 +378,7 @@ class Simulator::Implementation {
     trial_ = run.trial;
     progress_ = run.progress;
     steps_since_placed_ = run.steps_since_placed;
-    if (run.placement >= 0) {
-      const Instant& last = schedule_[static_cast<std::size_t>(run.placement)];
-      for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        Body& body = bodies_[k];
-        if (body.motion.empty()) continue;
-        body.placed_at = last.poses[k];
-        body.placed_time = last.time;
-        body.still = last.still[k];
-      }
-    }
+    if (run.placement >= 0) notePlaced(schedule_[static_cast<std::size_t>(run.placement)]);
     if (run.too_long_for > 0.0) requireShorterStep(run.too_long_for);
   }
 
@@ -407,7 +396,7 @@ class Simulator::Implementation {
     schedule_.clear();
     if (std::all_of(bodies_.begin(), bodies_.end(), [](const Body& body) { return body.motion.empty(); })) {
       // Bodies that were removed, or have no pose yet, are nowhere.
-      if (!bodies_.empty()) schedule_.push_back(instantAt(end_));
+      if (!bodies_.empty()) schedule_.push_back(instantAt(end_, nullptr));
       return;
     }
     const double shortest = 0.5 * std::min(trial_, parameters_.solver.max_step);
@@ -421,7 +410,7 @@ class Simulator::Implementation {
       divide(from, middle, shortest);
       divide(middle, to, shortest);
     } else {
-      schedule_.push_back(instantAt(to));
+      schedule_.push_back(instantAt(to, schedule_.empty() ? nullptr : &schedule_.back()));
     }
   }
 
@@ -439,12 +428,11 @@ class Simulator::Implementation {
     });
   }
 
-  /// The next placement, after the last one of the schedule.
-  Instant instantAt(double time) const {
+  /// @param before the placement before; null if that is the one for which sand made way the last time
+  Instant instantAt(double time, const Instant* before) const {
     Instant now{time, {}, {}, {}};
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
       const Body& body = bodies_[k];
-      const Instant* before = schedule_.empty() ? nullptr : &schedule_.back();
       const Eigen::Isometry3d pose =
           body.motion.empty() ? Eigen::Isometry3d::Identity() : body.motion.poseAt(time);
       const Eigen::Isometry3d& was = before ? before->poses[k] : body.placed_at;
@@ -476,27 +464,27 @@ class Simulator::Implementation {
   /// Moves sand out of the bodies where they are now.
   void placeBodies() {
     if (bodies_.empty()) return;
-    schedule_.clear();
-    const Instant now = instantAt(time_);
+    const Instant now = instantAt(time_, nullptr);
     engine_->placeBodies(placed(now), std::max(1, steps_since_placed_));
     steps_since_placed_ = 0;
-    for (std::size_t k = 0; k < bodies_.size(); ++k) {
-      if (bodies_[k].motion.empty()) continue;
-      bodies_[k].still = now.still[k];
-      notePlaced(bodies_[k], now.poses[k]);
-    }
+    notePlaced(now);
   }
 
-  void notePlaced(Body& body, const Eigen::Isometry3d& pose) const {
-    body.placed_at = pose;
-    body.placed_time = time_;
+  /// Sand has made way for this placement.
+  void notePlaced(const Instant& instant) {
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      Body& body = bodies_[k];
+      if (body.motion.empty()) continue;
+      body.placed_at = instant.poses[k];
+      body.placed_time = instant.time;
+      body.still = instant.still[k];
+    }
   }
 
   double bodyOverlap() {
     finish();
     if (bodies_.empty()) return 0.0;
-    schedule_.clear();
-    return engine_->overlap(placed(instantAt(time_)));
+    return engine_->overlap(placed(instantAt(time_, nullptr)));
   }
 
   void requireShorterStep(double bound) const {

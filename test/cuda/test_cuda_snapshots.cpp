@@ -4,6 +4,7 @@
 
 #include "parity.h"
 #include "random_edit.h"
+#include "same_run.h"
 
 namespace shallow_sand {
 namespace {
@@ -12,35 +13,19 @@ using CudaSnapshots = CudaTest;
 
 constexpr int kFrames = 6;
 
-void run(Simulator& simulator, double frame, int begin, int end) {
-  for (int number = begin; number < end; ++number) simulator.advanceTo((number + 1) * frame);
-}
-
-/// Sums of volumes before and after the snapshot are rounded on their own.
-void expectSameButForRoundings(const Simulator& whole, const Simulator& parts) {
-  expectSameBits(whole.fields(), parts.fields());
-  EXPECT_EQ(whole.time(), parts.time());
-  EXPECT_EQ(whole.progress().steps, parts.progress().steps);
-  EXPECT_EQ(whole.progress().last_step, parts.progress().last_step);
-  EXPECT_EQ(whole.progress().repeated_steps, parts.progress().repeated_steps);
-  EXPECT_EQ(whole.ledger().now, parts.ledger().now);
-  EXPECT_NEAR(whole.ledger().poured, parts.ledger().poured, 1e-12 * (1.0 + whole.ledger().poured));
-  EXPECT_NEAR(whole.ledger().left, parts.ledger().left, 1e-12 * (1.0 + whole.ledger().left));
-}
-
 /// Either backend takes a snapshot on the way; both go on from it.
 void compareHalves(const RandomScene& scene, int half) {
   Simulator whole = simulatorOn(Backend::cpu, scene);
-  run(whole, scene.frame, 0, kFrames);
+  advanceFrames(whole, scene.frame, 0, kFrames);
   for (const Backend from : {Backend::cpu, Backend::cuda}) {
     SCOPED_TRACE("taken on " + toString(from) + " after frame " + std::to_string(half));
     Simulator first = simulatorOn(from, scene);
-    run(first, scene.frame, 0, half);
+    advanceFrames(first, scene.frame, 0, half);
     const Snapshot snapshot = first.snapshot();
     Pair second(scene);
     second.both([&](Simulator& simulator) {
       simulator.restore(snapshot);
-      run(simulator, scene.frame, half, kFrames);
+      advanceFrames(simulator, scene.frame, half, kFrames);
     });
     expectSame(second.cpu, second.cuda);
     expectSameButForRoundings(whole, second.cuda);
@@ -89,7 +74,7 @@ TEST_F(CudaSnapshots, BodiesComeWhereThereWereNone) {
   RandomScene empty = scene;
   empty.bodies.clear();
   Simulator before = simulatorOn(Backend::cuda, empty);
-  run(before, scene.frame, 0, 2);
+  advanceFrames(before, scene.frame, 0, 2);
   const Snapshot snapshot = before.snapshot();
   Pair pair(scene);
   pair.both([&](Simulator& simulator) { simulator.restore(snapshot); });

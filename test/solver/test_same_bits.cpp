@@ -4,6 +4,7 @@
 
 #include "random_scene.h"
 #include "random_seed.h"
+#include "same_run.h"
 
 namespace shallow_sand {
 namespace {
@@ -59,17 +60,6 @@ std::vector<Variant> variantsOf(const SimulatorParameters& parameters) {
   return variants;
 }
 
-void expectSame(const Simulator& one, const Simulator& other) {
-  expectSameBits(one.fields(), other.fields());
-  EXPECT_EQ(one.time(), other.time());
-  EXPECT_EQ(one.progress().steps, other.progress().steps);
-  EXPECT_EQ(one.progress().repeated_steps, other.progress().repeated_steps);
-  EXPECT_EQ(one.progress().last_step, other.progress().last_step);
-  EXPECT_EQ(one.ledger().now, other.ledger().now);
-  EXPECT_EQ(one.ledger().left, other.ledger().left);
-  EXPECT_EQ(one.ledger().poured, other.ledger().poured);
-}
-
 void expectValid(const Simulator& simulator) {
   const Fields fields = simulator.fields();
   for (std::size_t k = 0; k < fields.depth.size(); ++k) {
@@ -100,7 +90,7 @@ TEST(SameBits, HoweverTheStepIsComputed) {
       for (std::size_t k = 0; k < variants.size(); ++k) {
         SCOPED_TRACE(variants[k].name);
         others[k].advance(scene.frame);
-        expectSame(reference, others[k]);
+        expectSameRun(reference, others[k]);
       }
     }
     steps += reference.progress().steps;
@@ -130,7 +120,7 @@ TEST(SameBits, WhatRestsIsNotComputed) {
     Simulator sleeping = simulatorOf(scene, scene.sand.parameters);
     Simulator complete = simulatorOf(scene, awake);
     for (Simulator* simulator : {&sleeping, &complete}) simulator->advance(8.0 * scene.frame);
-    expectSame(sleeping, complete);
+    expectSameRun(sleeping, complete);
     EXPECT_FALSE(sameBits(sleeping.fields().depth, scene.sand.depth));
     const double share = static_cast<double>(sleeping.progress().cell_updates) /
                          static_cast<double>(complete.progress().cell_updates);
