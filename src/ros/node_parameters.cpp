@@ -134,6 +134,8 @@ NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
   take(yaml, source, "picture", "the path of a file", parameters.picture);
   takeBetween(yaml, source, "frame_rate", 0.01, 1e4, "hertz", parameters.frame_rate);
   takeBetween(yaml, source, "publish_rate", 0.01, 1e4, "hertz", parameters.publish_rate);
+  takeBetween(yaml, source, "height_field_rate", 0.01, 1e4, "hertz", parameters.height_field_rate);
+  take(yaml, source, "publish_speed", "true or false", parameters.publish_speed);
   // tf keeps ten seconds.
   takeBetween(yaml, source, "tf_delay", 0.0, 5.0, "seconds", parameters.tf_delay);
   takeBetween(yaml, source, "tf_timeout", 0.001, 1e6, "seconds", parameters.tf_timeout);

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "shallow_sand/Status.h"
-#include "shallow_sand/ros/conversions.h"
 #include "shallow_sand/scene/picture.h"
 #include "shallow_sand/scene/report.h"
 #include "shallow_sand/scene/simulation.h"
@@ -16,14 +15,16 @@ namespace {
 /// stays responsive and a paused one does not race afterwards.
 constexpr double kLongestFrame = 0.1;
 
-/// A mesh takes 240 bytes a cell, and ROS drops messages of a gigabyte.
-constexpr std::size_t kMostCellsShown = 4000000;
-
 Simulator build(const Scene& scene) {
   std::vector<std::string> notes;
   Simulator simulator = buildSimulator(scene, &notes);
   for (const std::string& note : notes) ROS_INFO_STREAM(note);
   return simulator;
+}
+
+SandConstants constantsOf(const Simulator& simulator) {
+  const SimulatorParameters& parameters = simulator.parameters();
+  return sandConstants(simulator.grid(), parameters.gravity, parameters.material);
 }
 
 }  // namespace
@@ -32,12 +33,14 @@ SandNode::SandNode()
     : parameters_(readNodeParameters(private_node_)),
       simulator_(build(parameters_.scene)),
       bodies_(parameters_, transforms_, simulator_),
-      services_(parameters_.scene.parameters.grid.frame, simulator_.grid().spacing, bodies_) {
+      services_(parameters_.scene.parameters.grid.frame, simulator_.grid().spacing, bodies_),
+      height_field_(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
+                    constantsOf(simulator_), parameters_.height_field_rate, parameters_.publish_speed),
+      surface_(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
+               parameters_.publish_rate) {
   for (const RobotParameters& robot : parameters_.robots) {
     robots_.emplace_back(robot, parameters_.robots.size() == 1, simulator_.grid().spacing);
   }
-  points_ = private_node_.advertise<sensor_msgs::PointCloud2>("points", 1, true);
-  mesh_ = private_node_.advertise<visualization_msgs::Marker>("mesh", 1, true);
   status_ = private_node_.advertise<Status>("status", 1, true);
   ROS_INFO_STREAM(simulator_.backendNotice());
   ROS_INFO_STREAM(simulator_.grid().columns << " x " << simulator_.grid().rows << " cells of "
@@ -64,20 +67,26 @@ void SandNode::run() {
 void SandNode::restart(const ros::Duration& duration) {
   ROS_WARN_STREAM("time went back by " << duration.toSec() << " s; the sand goes on from here, and bodies "
                                        << "are put at their next poses");
-  last_frame_ = last_surface_ = last_status_ = ros::Time();
+  last_frame_ = last_status_ = ros::Time();
   transforms_.restart();
   bodies_.restartClock();
 }
 
 void SandNode::update(const ros::Time& time) {
   for (Robot& robot : robots_) robot.update(node_, bodies_);
-  advance(time);
-  const ros::Duration surface_period(1.0 / parameters_.publish_rate);
-  if (last_surface_.isZero() || time - last_surface_ >= surface_period) publishSurface(time);
+  beginAdvance(time);
+  // From the GPU they have come while the frame before ended, and this one runs already.
+  handOverFields();
+  const ros::WallTime begin = ros::WallTime::now();
+  simulator_.time();  // waits for the GPU
+  busy_ += (ros::WallTime::now() - begin).toSec();
   if (last_status_.isZero() || time - last_status_ >= ros::Duration(1.0)) publishStatus(time);
+  requestFields(time);
+  // The CPU has computed all before it returned: fields need not wait for a frame.
+  if (simulator_.backend() == Backend::cpu) handOverFields();
 }
 
-void SandNode::advance(const ros::Time& time) {
+void SandNode::beginAdvance(const ros::Time& time) {
   const double elapsed = last_frame_.isZero() ? 0.0 : (time - last_frame_).toSec();
   last_frame_ = time;
   if (!(elapsed > 0.0)) return;
@@ -85,27 +94,25 @@ void SandNode::advance(const ros::Time& time) {
   const double end = simulator_.time() + frame;
   bodies_.update(time, frame, end);
   const ros::WallTime begin = ros::WallTime::now();
-  simulator_.advanceTo(end);
+  simulator_.beginAdvanceTo(end);
   busy_ += (ros::WallTime::now() - begin).toSec();
 }
 
-void SandNode::publishSurface(const ros::Time& time) {
-  const std::string& frame = parameters_.scene.parameters.grid.frame;
-  if (simulator_.grid().cells() > kMostCellsShown) {
-    ROS_WARN_STREAM_ONCE(simulator_.grid().cells()
-                         << " cells are more than a message can hold; ~points and ~mesh stay "
-                         << "silent above " << kMostCellsShown);
-    last_surface_ = time;
-    return;
+void SandNode::requestFields(const ros::Time& time) {
+  if (requested_ || !(height_field_.follower().isDue() || surface_.follower().isDue())) return;
+  simulator_.requestFields();
+  requested_ = time;
+}
+
+void SandNode::handOverFields() {
+  if (!requested_) return;
+  const Fields& fields = simulator_.collectFields();
+  const std::vector<Window> changes = simulator_.takeChanges();
+  for (FieldsFollower* follower : {&height_field_.follower(), &surface_.follower()}) {
+    follower->note(changes);
+    if (follower->isDue()) follower->send(fields, *requested_);
   }
-  const Fields fields = simulator_.fields();
-  points_.publish(toPointCloud(simulator_.grid(), fields, frame, time));
-  // A mesh takes forty bytes a corner: made only when somebody looks, or once, so that whoever comes later
-  // sees sand.
-  if (mesh_.getNumSubscribers() > 0 || last_surface_.isZero()) {
-    mesh_.publish(toMarker(simulator_.grid(), fields, frame, time));
-  }
-  last_surface_ = time;
+  requested_.reset();
 }
 
 void SandNode::publishStatus(const ros::Time& time) {

@@ -56,7 +56,10 @@ __global__ void __launch_bounds__(kBlockThreads, 1)
 FieldCourier::FieldCourier(const Grid& grid, const Fields& fields)
     : grid_(grid),
       tiles_(DueTiles::tilesAcross(grid.columns) * DueTiles::tilesUp(grid.rows)),
-      fields_(fields) {}
+      fields_(fields),
+      changed_(grid, kBlockColumns, kBlockRows) {
+  changed_.add(Window::all(grid));
+}
 
 FieldCourier::~FieldCourier() {
   cudaStreamSynchronize(stream_);  // a copy that nobody waited for still uses the memory
@@ -66,6 +69,7 @@ void FieldCourier::expectLoads() {
   if (!fields_.load.empty()) return;
   collect();
   fields_.addLoads();
+  changed_.add(Window::all(grid_));
   values_ = CudaMemory<float>(0);
 }
 
@@ -117,6 +121,7 @@ const Fields& FieldCourier::collect() {
 
 void FieldCourier::unpack(int tile, const float* values) {
   const Window cells = DueTiles::cellsOf(tile, grid_.columns, grid_.rows);
+  changed_.add(cells);
   std::vector<float>* const all[] = {
       &fields_.depth,           &fields_.momentum_x,      &fields_.momentum_y,    &fields_.load,
       &fields_.load_momentum_x, &fields_.load_momentum_y, &fields_.load_elevation};

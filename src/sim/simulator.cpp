@@ -618,6 +618,7 @@ void Simulator::requestFields() {
   implementation_->engine_->requestFields();
 }
 const Fields& Simulator::collectFields() { return implementation_->engine_->collectFields(); }
+std::vector<Window> Simulator::takeChanges() { return implementation_->engine_->takeChanges(); }
 Fields Simulator::fields() const { return implementation_->fields(); }
 Ledger Simulator::ledger() const { return implementation_->ledger(); }
 const Progress& Simulator::progress() const {

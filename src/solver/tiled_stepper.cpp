@@ -48,15 +48,15 @@ float TiledStepper::attempt(const StepArguments& arguments, const std::vector<Wi
                             const SandFieldsOut& out) {
   using Walker = RowWalker<Step<false, false>>;
   if (!options_.sleeping) tiles_.touch(Window::all(grid_));
-  const std::vector<Window>& rectangles = tiles_.due(Walker::kWidest, Walker::kHighest);
+  rectangles_ = tiles_.due(Walker::kWidest, Walker::kHighest);
   cells_ = 0;
   stepped_ = Window{};
-  for (const Window& cells : rectangles) {
+  for (const Window& cells : rectangles_) {
     cells_ += static_cast<long long>(cells.cells());
     stepped_ = stepped_.united(cells);
   }
-  executor_.forEachTask(static_cast<int>(rectangles.size()), [&](int task, int thread) {
-    const Window& cells = rectangles[task];
+  executor_.forEachTask(static_cast<int>(rectangles_.size()), [&](int task, int thread) {
+    const Window& cells = rectangles_[task];
     const Window reached = cells.grown(Tiles::kReach, grid_);
     withStep(arguments, reached.overlapsAny(bodies), options_.with_slopes, [&](const auto& step) {
       RowWalker<std::decay_t<decltype(step)>> walker(step, out, cells, tiles_, scratch_[thread].data());

@@ -25,7 +25,9 @@ struct NodeParameters {
   Scene scene;                          ///< from the keys of a scene file
   std::vector<RobotParameters> robots;  ///< at least one
   double frame_rate = 50.0;             ///< at which poses are taken and the sand runs on [Hz]
-  double publish_rate = 5.0;            ///< of ~points and ~mesh [Hz]
+  double publish_rate = 5.0;            ///< of ~points, ~mesh and ~bodies, of the wall clock [Hz]
+  double height_field_rate = 10.0;      ///< of ~height_field_updates, of the wall clock [Hz]
+  bool publish_speed = true;            ///< in ~height_field and its updates
   double tf_delay = 0.1;         ///< of the sand behind ROS time, so that the poses it needs have come [s]
   double tf_timeout = 1.0;       ///< older poses are stale [s]
   double max_body_speed = 10.0;  ///< of a body's farthest point; what is faster is a jump [m/s]

@@ -2,12 +2,15 @@
 
 #include <ros/ros.h>
 
+#include <optional>
 #include <vector>
 
 #include "shallow_sand/ros/body_services.h"
+#include "shallow_sand/ros/height_field_publisher.h"
 #include "shallow_sand/ros/node_parameters.h"
 #include "shallow_sand/ros/robot.h"
 #include "shallow_sand/ros/sand_bodies.h"
+#include "shallow_sand/ros/surface_publisher.h"
 #include "shallow_sand/ros/transform_reader.h"
 #include "shallow_sand/sim/simulator.h"
 
@@ -22,7 +25,9 @@ namespace shallow_sand {
 /// given up, and ~status says by how much the sand lags; bodies cross what was given up without speed. When
 /// time goes backwards the sand goes on from there;
 /// - serves ~add_body, ~move_body and ~remove_body; meshes are read and sampled beside the sand;
-/// - publishes ~points, ~mesh (latched, at ~publish_rate) and ~status (latched, once a second);
+/// - publishes ~points, ~mesh (latched, at ~publish_rate), ~height_field and its updates, each beside the
+/// sand: the sand hands over what has changed, on the GPU while the next frame runs, and waits for nobody;
+/// - publishes ~status (latched, once a second);
 /// - at the end writes ~report and ~picture.
 class SandNode {
  public:
@@ -37,9 +42,11 @@ class SandNode {
   void restart(const ros::Duration& duration);
   /// What is due at a time of the sand: bodies, sand, messages.
   void update(const ros::Time& time);
-  /// Brings the sand up to `time`.
-  void advance(const ros::Time& time);
-  void publishSurface(const ros::Time& time);
+  /// Starts to bring the sand up to `time`.
+  void beginAdvance(const ros::Time& time);
+  void requestFields(const ros::Time& time);
+  /// Gives those that were requested to those who wait for them.
+  void handOverFields();
   void publishStatus(const ros::Time& time);
   void writeResults() const;
 
@@ -51,12 +58,12 @@ class SandNode {
   SandBodies bodies_;
   std::vector<Robot> robots_;
   BodyServices services_;
-  ros::Publisher points_;
-  ros::Publisher mesh_;
+  HeightFieldPublisher height_field_;
+  SurfacePublisher surface_;
   ros::Publisher status_;
-  ros::Time last_now_;  ///< ROS time; the next three are times of the sand
+  std::optional<ros::Time> requested_;  ///< time of the fields that are under way from the simulator
+  ros::Time last_now_;                  ///< ROS time; the next two are times of the sand
   ros::Time last_frame_;
-  ros::Time last_surface_;
   ros::Time last_status_;
   ros::WallTime last_status_wall_;
   double last_status_simulated_ = 0.0;

@@ -29,6 +29,7 @@ class CudaEngine : public Engine {
   Fields fields() override;
   void requestFields() override;
   const Fields& collectFields() override;
+  std::vector<Window> takeChanges() override { return courier_.takeChanges(); }
   double poured() const override { return memory_.poured(); }
   double left() const override { return memory_.left(); }
   double overlap(const std::vector<PlacedBody>& bodies) override;

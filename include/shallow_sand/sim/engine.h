@@ -46,6 +46,9 @@ class Engine {
   virtual void requestFields() = 0;
   /// The fields that were requested the last time.
   virtual const Fields& collectFields() = 0;
+  /// Windows that hold all cells in which the fields that were collected differ from those that were when
+  /// this was asked the last time.
+  virtual std::vector<Window> takeChanges() = 0;
   virtual double poured() const = 0;  ///< by pours and edits [m³]
   virtual double left() const = 0;    ///< over open edges, by pours and edits [m³]
   /// Sand inside of these bodies. [m³]

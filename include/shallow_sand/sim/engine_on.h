@@ -11,6 +11,7 @@
 #include "shallow_sand/coupling/flow_loads.h"
 #include "shallow_sand/coupling/meet_bodies.h"
 #include "shallow_sand/coupling/pushed_sand.h"
+#include "shallow_sand/device/tile_set.h"
 #include "shallow_sand/sim/sand_memory.h"
 
 namespace shallow_sand {
@@ -32,7 +33,9 @@ class EngineOn : public SteppedEngine {
         stepper_(executor_, stepper...),
         grid_(start.grid),
         displacement_(start.displacement),
-        memory_(start) {}
+        memory_(start),
+        changed_(start.grid, kCopiedColumns, kCopiedRows),
+        collected_(start.grid, kCopiedColumns, kCopiedRows) {}
 
   void addBody(const DistanceField& field) override { memory_.addBody(field); }
   void removeBody(std::size_t body) override { memory_.removeBody(body); }
@@ -77,6 +80,7 @@ class EngineOn : public SteppedEngine {
       }
     });
     std::swap(memory_.state, memory_.next);
+    for (const Window& cells : stepper_.rectangles()) changed_.add(cells);
     const long long computed = stepper_.accept();
     flowLoads();
     return computed;
@@ -110,8 +114,22 @@ class EngineOn : public SteppedEngine {
     memory_.swapWhereTouching(memory_.downloaded(c.cover), fields);
     return fields;
   }
-  void requestFields() override { requested_ = fields(); }
+  void requestFields() override {
+    const std::vector<Window> changed = changed_.take();
+    const bool has_loads = !memory_.contacts.empty();
+    if (bed_is_new_ || requested_.load.empty() == has_loads) {
+      bed_is_new_ = false;
+      requested_ = fields();
+      collected_.add(Window::all(grid_));
+      return;
+    }
+    for (const Window& window : changed) {
+      memory_.download(window, requested_);
+      collected_.add(window);
+    }
+  }
   const Fields& collectFields() override { return requested_; }
+  std::vector<Window> takeChanges() override { return collected_.take(); }
 
   double poured() const override { return memory_.poured(); }
   double left() const override { return memory_.left(); }
@@ -133,7 +151,8 @@ class EngineOn : public SteppedEngine {
 
   void restore(const Fields& fields, const ContactSnapshot& contacts) override {
     memory_.restore(fields, contacts);
-    stepper_.touch(Window::all(grid_));
+    touch(Window::all(grid_));
+    bed_is_new_ = true;
     windows_ = contacts.windows;
     watched_.assign(windows_.size(), Watched{});
     standing_.clear();
@@ -141,6 +160,10 @@ class EngineOn : public SteppedEngine {
   }
 
  private:
+  /// Of which fields are copied for those who ask for them [cells].
+  static constexpr int kCopiedColumns = 32;
+  static constexpr int kCopiedRows = 8;
+
   /// What a run of steps calls.
   struct RunningSand {
     EngineOn& engine;
@@ -272,7 +295,7 @@ class EngineOn : public SteppedEngine {
   /// Sand goes on by a column in each of `hops`, unless all has gone before. After the first, nothing changes
   /// in windows in which all has.
   void makeWay(std::vector<Crowded> crowded, int hops) {
-    for (const Crowded& here : crowded) stepper_.touch(here.bins.window);
+    for (const Crowded& here : crowded) touch(here.bins.window);
     for (int hop = 0; hop < hops && !crowded.empty(); ++hop) {
       std::vector<Window> reached;
       for (const Crowded& here : crowded) displace(here, hop > 0, reached);
@@ -314,7 +337,7 @@ class EngineOn : public SteppedEngine {
 
   /// What was pushed is 0 around what can come into the window, and everywhere in it afterwards.
   void layPushedSand(const Window& window) {
-    stepper_.touch(window);
+    touch(window);
     auto& contacts = memory_.contacts.front();
     const float* repose_rise = memory_.repose_rise.size() == 0 ? nullptr : memory_.repose_rise.data();
     const SandLayer pushed = contacts.pushed.layer();
@@ -336,7 +359,7 @@ class EngineOn : public SteppedEngine {
   }
 
   void drag(const BodyBins& bins) {
-    stepper_.touch(bins.window);
+    touch(bins.window);
     rays_.forEachColumn(executor_,
                         FindSubmerged{overBed(bins), memory_.state.depth.data(), memory_.contact()});
     executor_.forEachCell(bins.window, DragSand{memory_.contact(), memory_.state.layer(), grid_.columns,
@@ -359,7 +382,7 @@ class EngineOn : public SteppedEngine {
       executor_.forEachCell(near, flow);
       watched_[k].flows = executor_.holdsAny(near, FlowedSand{flow});
       if (!watched_[k].flows) continue;
-      stepper_.touch(window);
+      touch(window);
       executor_.forEachCell(near, CopyLoads{flow});
     }
   }
@@ -384,7 +407,13 @@ class EngineOn : public SteppedEngine {
   void apply(ChangeSand& change, Memory<double>& taken) {
     memory_.bind(change, taken);
     executor_.forEachCell(change.window, change);
-    stepper_.touch(change.window);
+    touch(change.window);
+  }
+
+  /// The cells change, and what is beside them may have to be stepped.
+  void touch(const Window& cells) {
+    stepper_.touch(cells);
+    changed_.add(cells);
   }
 
   BodiesOverBed overBed(const BodyBins& bins) const {
@@ -400,6 +429,9 @@ class EngineOn : public SteppedEngine {
   StepArguments attempted_{};
   StepRun run_{};
   Fields requested_;
+  bool bed_is_new_ = true;  // since fields were requested the last time
+  TileSet changed_;         // since then
+  TileSet collected_;       // where they have changed that nobody was told of
   std::vector<BodyView> views_;
   BinLists lists_;
   std::map<std::size_t, Window> standing_;  // columns of each body, when they were placed the last time

@@ -3,6 +3,7 @@
 #include "shallow_sand/core/fields.h"
 #include "shallow_sand/coupling/contact.h"
 #include "shallow_sand/device/cuda_memory.cuh"
+#include "shallow_sand/device/tile_set.h"
 #include "shallow_sand/solver/due_tiles.cuh"
 
 namespace shallow_sand {
@@ -27,11 +28,14 @@ class FieldCourier {
   void reset(const Fields& fields) {
     collect();
     fields_ = fields;
+    changed_.add(Window::all(grid_));
   }
   /// Gathers what has changed after all that was put into the stream before.
   void request(const DueTiles& tiles, const FieldSources& sources, const CudaStream& stream);
   /// Waits for what was requested.
   const Fields& collect();
+  /// Where what was collected has changed since this was asked the last time.
+  std::vector<Window> takeChanges() { return changed_.take(); }
 
  private:
   static constexpr int kTilesAtOnce = 2048;
@@ -42,6 +46,7 @@ class FieldCourier {
   Grid grid_;
   int tiles_;
   Fields fields_;
+  TileSet changed_;
   bool requested_ = false;
   CudaStream stream_;
   CudaEvent gathered_;

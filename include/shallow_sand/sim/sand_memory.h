@@ -181,14 +181,41 @@ class SandMemory {
     if (!snapshot.windows.empty()) restoreContacts(layers, snapshot, cover);
   }
 
+  /// Brings the cells of a window up to date in fields that were taken before. On the host.
+  void download(const Window& window, Fields& fields) const {
+    struct Copy {
+      const float* from;
+      float* to;
+    };
+    std::vector<Copy> copies{{state.depth.data(), fields.depth.data()},
+                             {state.momentum_x.data(), fields.momentum_x.data()},
+                             {state.momentum_y.data(), fields.momentum_y.data()}};
+    if (!contacts.empty()) {
+      const Contacts& c = contacts.front();
+      copies.insert(copies.end(), {{c.hidden.depth.data(), fields.load.data()},
+                                   {c.hidden.momentum_x.data(), fields.load_momentum_x.data()},
+                                   {c.hidden.momentum_y.data(), fields.load_momentum_y.data()},
+                                   {c.top.data(), fields.load_elevation.data()}});
+    }
+    for (int j = window.row_begin; j < window.row_end; ++j) {
+      const std::size_t first = grid.index(window.column_begin, j);
+      const std::size_t count = static_cast<std::size_t>(window.columns());
+      for (const Copy& copy : copies) std::copy_n(copy.from + first, count, copy.to + first);
+      if (contacts.empty()) continue;
+      const Cover* cover = contacts.front().cover.data();
+      for (std::size_t k = first; k < first + count; ++k) swapIfTouching(cover[k], k, fields);
+    }
+  }
+
   /// Ground and load become what a step sees and what it does not, or the other way round.
   static void swapWhereTouching(const std::vector<Cover>& cover, Fields& fields) {
-    for (std::size_t k = 0; k < cover.size(); ++k) {
-      if (cover[k] != Cover::touching) continue;
-      std::swap(fields.depth[k], fields.load[k]);
-      std::swap(fields.momentum_x[k], fields.load_momentum_x[k]);
-      std::swap(fields.momentum_y[k], fields.load_momentum_y[k]);
-    }
+    for (std::size_t k = 0; k < cover.size(); ++k) swapIfTouching(cover[k], k, fields);
+  }
+  static void swapIfTouching(Cover cover, std::size_t k, Fields& fields) {
+    if (cover != Cover::touching) return;
+    std::swap(fields.depth[k], fields.load[k]);
+    std::swap(fields.momentum_x[k], fields.load_momentum_x[k]);
+    std::swap(fields.momentum_y[k], fields.load_momentum_y[k]);
   }
 
   ContactFields contact() {

@@ -134,6 +134,10 @@ class Simulator {
   /// The fields that were requested the last time; valid until anything else is asked for but the time and
   /// the progress. On the GPU, whatever needs the fields is a request.
   const Fields& collectFields();
+  /// Windows that hold all cells in which the fields that were collected last differ from those that were
+  /// collected before this was asked the last time; the whole map the first time, and where the bed is
+  /// another or bodies are the first ones.
+  std::vector<Window> takeChanges();
   Ledger ledger() const;
   const Progress& progress() const;
   double maxSpeed() const;          ///< of the sand now [m/s]

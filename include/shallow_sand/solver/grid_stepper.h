@@ -27,6 +27,7 @@ class GridStepper {
   }
   /// What the last attempt computed: everything.
   const Window& stepped() const { return stepped_; }
+  std::vector<Window> rectangles() const { return {stepped_}; }
   /// The last attempt is the new state. Returns how many cells it computed.
   long long accept() { return static_cast<long long>(stepped_.cells()); }
 

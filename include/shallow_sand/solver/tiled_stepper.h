@@ -33,6 +33,8 @@ class TiledStepper {
   float attempt(const StepArguments& arguments, const std::vector<Window>& bodies, const SandFieldsOut& out);
   /// A window that holds all cells that the last attempt computed.
   const Window& stepped() const { return stepped_; }
+  /// Those cells exactly.
+  const std::vector<Window>& rectangles() const { return rectangles_; }
   /// The last attempt is the new state. Returns how many cells it computed.
   long long accept();
 
@@ -44,6 +46,7 @@ class TiledStepper {
   std::vector<HostExecutor::Memory<float>> scratch_;  // one for each thread
   long long cells_ = 0;
   Window stepped_;
+  std::vector<Window> rectangles_;
 };
 
 }  // namespace shallow_sand

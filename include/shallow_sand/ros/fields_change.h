@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "shallow_sand/core/fields.h"
+#include "shallow_sand/device/window.h"
+
+namespace shallow_sand {
+
+/// New values of some cells, to be carried to a copy of the fields in another thread.
+struct FieldsChange {
+  std::vector<Window> windows;  ///< that do not overlap
+  /// Of the cells of each window, row by row, one window after the other. No momenta of loads; the bed only
+  /// where all cells are there.
+  Fields values;
+};
+
+/// @param windows that do not overlap
+FieldsChange changeOf(const Fields& fields, std::vector<Window> windows, const Grid& grid);
+
+/// The change holds every cell of the map.
+bool isWhole(const FieldsChange& change, const Grid& grid);
+
+/// Brings a copy up to date. The first change that it takes must be whole.
+void apply(const FieldsChange& change, const Grid& grid, Fields& copy);
+
+}  // namespace shallow_sand

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <string>
+
+#include "shallow_sand/ros/fields_follower.h"
+
+namespace shallow_sand {
+
+/// Publishes ~points and ~mesh, both latched, in a thread of its own.
+class SurfacePublisher {
+ public:
+  /// @param node whose name the topics begin with @param rate of both [Hz]
+  SurfacePublisher(ros::NodeHandle node, const Grid& grid, const std::string& frame, double rate);
+  ~SurfacePublisher() { follower_.stop(); }
+
+  /// What the sand's thread hands fields to.
+  FieldsFollower& follower() { return follower_; }
+
+ private:
+  void take(const FieldsChange& change, const ros::Time& stamp);
+
+  Grid grid_;
+  std::string frame_;
+  Fields fields_;  ///< of the follower's thread, as all that follows
+  FieldsFollower follower_;
+  ros::Publisher points_;
+  ros::Publisher mesh_;
+};
+
+}  // namespace shallow_sand

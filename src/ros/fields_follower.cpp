@@ -1,0 +1,45 @@
+#include "shallow_sand/ros/fields_follower.h"
+
+#include <boost/make_shared.hpp>
+#include <utility>
+
+namespace shallow_sand {
+namespace {
+
+class Call : public ros::CallbackInterface {
+ public:
+  explicit Call(std::function<void()> function) : function_(std::move(function)) {}
+  CallResult call() override {
+    function_();
+    return Success;
+  }
+
+ private:
+  std::function<void()> function_;
+};
+
+}  // namespace
+
+FieldsFollower::FieldsFollower(const Grid& grid, double rate, Take take)
+    : grid_(grid), period_(1.0 / rate), take_(std::move(take)), changed_(grid, 32, 8) {
+  changed_.add(Window::all(grid));
+}
+
+bool FieldsFollower::isDue() const { return awake_ && !busy_ && ros::WallTime::now() >= next_; }
+
+void FieldsFollower::note(const std::vector<Window>& changes) {
+  for (const Window& window : changes) changed_.add(window);
+}
+
+void FieldsFollower::send(const Fields& fields, const ros::Time& stamp) {
+  // Frames come when they come: what is late does not make the next one late.
+  next_ = std::max(next_ + period_, ros::WallTime::now());
+  busy_ = true;
+  const auto change = boost::make_shared<const FieldsChange>(changeOf(fields, changed_.take(), grid_));
+  queue_.addCallback(boost::make_shared<Call>([this, change, stamp] {
+    take_(*change, stamp);
+    busy_ = false;
+  }));
+}
+
+}  // namespace shallow_sand

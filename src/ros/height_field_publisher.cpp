@@ -1,0 +1,38 @@
+#include "shallow_sand/ros/height_field_publisher.h"
+
+#include <ros/single_subscriber_publisher.h>
+
+namespace shallow_sand {
+namespace {
+
+/// Updates that wait for a slow subscriber: four times what may change at once. If more would have to, it
+/// misses some, notices, and asks for a map.
+constexpr std::uint32_t kMostWaiting = 1024;
+
+}  // namespace
+
+HeightFieldPublisher::HeightFieldPublisher(ros::NodeHandle node, const Grid& grid, const std::string& frame,
+                                           const SandConstants& sand, double rate, bool with_speed)
+    : difference_(grid, frame, sand, with_speed),
+      follower_(grid, rate,
+                [this](const FieldsChange& change, const ros::Time& stamp) { take(change, stamp); }) {
+  node.setCallbackQueue(&follower_.queue());
+  maps_ = node.advertise<HeightField>("height_field", 1, [this](const ros::SingleSubscriberPublisher& one) {
+    follower_.wake();
+    if (difference_.hasMap()) one.publish(difference_.map());
+  });
+  updates_ = node.advertise<HeightFieldUpdate>("height_field_updates", kMostWaiting,
+                                               [this](const ros::SingleSubscriberPublisher& one) {
+                                                 if (difference_.hasMap())
+                                                   one.publish(difference_.sequence());
+                                               });
+  follower_.start();
+}
+
+void HeightFieldPublisher::take(const FieldsChange& change, const ros::Time& stamp) {
+  const HeightFieldDifference::News news = difference_.take(change, stamp);
+  if (news.map_is_new) maps_.publish(difference_.map());
+  for (const HeightFieldUpdate& update : news.updates) updates_.publish(update);
+}
+
+}  // namespace shallow_sand
