@@ -1,0 +1,94 @@
+#include "shallow_sand/rviz/blade_tool.h"
+
+#include <ros/service.h>
+#include <rviz/display_context.h>
+#include <rviz/load_resource.h>
+#include <rviz/properties/float_property.h>
+#include <rviz/viewport_mouse_event.h>
+
+#include <chrono>
+#include <cmath>
+#include <pluginlib/class_list_macros.hpp>
+
+namespace shallow_sand {
+namespace {
+
+rviz::FloatProperty* length(const char* name, float value, const char* description, rviz::Property* parent) {
+  auto* property = new rviz::FloatProperty(name, value, description, parent);
+  property->setMin(0.001f);
+  return property;
+}
+
+/// Waits for the node, so not to be called where rviz draws.
+std::string call(const std::string& service, AddBody body) {
+  if (!ros::service::call(service, body)) return service + " does not answer";
+  return body.response.success ? body.request.name + " is in the sand; drag it by its handle"
+                               : body.response.message;
+}
+
+}  // namespace
+
+BladeTool::BladeTool() : rviz::Tool() {
+  shortcut_key_ = 'b';
+  width_ = length("Width", 0.6f, "Of the blade, across the view [m].", getPropertyContainer());
+  height_ = length("Height", 0.3f, "Of the blade [m].", getPropertyContainer());
+  thickness_ = length("Thickness", 0.04f, "Of the blade [m].", getPropertyContainer());
+  depth_ = new rviz::FloatProperty("Depth", 0.08f, "How deep it is put into the sand [m].",
+                                   getPropertyContainer());
+}
+
+void BladeTool::onInitialize() {
+  setName("Place Blade");
+  setCursor(rviz::makeIconCursor("package://rviz/icons/crosshair.svg"));
+}
+
+void BladeTool::activate() { tell("Click on the sand to put a blade there."); }
+
+void BladeTool::tell(const QString& text) { setStatus(text); }
+
+int BladeTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
+  if (!event.leftDown()) return 0;
+  const std::optional<SandUnderMouse> target = sandUnderMouse(*context_, event);
+  if (!target) {
+    tell("There is no sand under the mouse.");
+    return 0;
+  }
+  if (answer_.valid()) return 0;
+  tell("The blade is on its way.");
+  answer_ =
+      std::async(std::launch::async, call, target->display->nodeName() + "/add_body", requestAt(*target));
+  return Render;
+}
+
+AddBody BladeTool::requestAt(const SandUnderMouse& target) {
+  AddBody body;
+  AddBody::Request& request = body.request;
+  // A name that no blade had before, in this rviz or another.
+  request.name = "blade_" + std::to_string(ros::WallTime::now().toNSec() / 1000000);
+  request.shape.type = shape_msgs::SolidPrimitive::BOX;
+  request.shape.dimensions = {static_cast<double>(thickness_->getFloat()),
+                              static_cast<double>(width_->getFloat()),
+                              static_cast<double>(height_->getFloat())};
+  request.pose.header.frame_id = target.display->mapFrame();
+  const Ogre::Vector3& place = target.place.in_map;
+  request.pose.pose.position.x = static_cast<double>(place.x);
+  request.pose.pose.position.y = static_cast<double>(place.y);
+  request.pose.pose.position.z =
+      static_cast<double>(place.z + 0.5f * height_->getFloat() - depth_->getFloat());
+  // Its x goes the way one looks.
+  const double yaw =
+      std::atan2(static_cast<double>(target.direction.y), static_cast<double>(target.direction.x));
+  request.pose.pose.orientation.z = std::sin(0.5 * yaw);
+  request.pose.pose.orientation.w = std::cos(0.5 * yaw);
+  request.handle = true;
+  return body;
+}
+
+void BladeTool::update(float /*wall_dt*/, float /*ros_dt*/) {
+  if (!answer_.valid() || answer_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  tell(QString::fromStdString(answer_.get()));
+}
+
+}  // namespace shallow_sand
+
+PLUGINLIB_EXPORT_CLASS(shallow_sand::BladeTool, rviz::Tool)
