@@ -108,6 +108,7 @@ std::vector<RobotParameters> takeRobots(YAML::Node& parameters, const std::strin
   takeLinks(parameters, source, single);
   std::vector<YAML::Node> list;
   take(parameters, source, "robots", "a list of maps", list);
+  if (list.empty() && single.description.empty()) return {};
   if (list.empty()) return {single};
   if (!single.tf_prefix.empty() || !single.links.include.empty() || !single.links.exclude.empty() ||
       !single.shapes.empty()) {

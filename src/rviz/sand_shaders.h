@@ -80,13 +80,16 @@ void main() {
 
   // A low sun in the north-west, and a sky that reaches less far down into ruts.
   float sun = max(dot(up, normalize(vec3(-0.55, 0.60, 0.62))), 0.0);
-  float sky = openness * openness * (0.6 + 0.4 * up.z);
+  float sky = (0.25 + 0.75 * openness * openness) * (0.65 + 0.35 * up.z);
   color *= 0.92 * sun * mix(0.55, 1.0, openness) * vec3(1.05, 1.0, 0.92) + 0.50 * sky * vec3(0.93, 0.98, 1.10);
 
   if (contour_interval > 0.0) {
     float level = place.z / contour_interval;
-    float away = abs(fract(level - 0.5) - 0.5) / max(fwidth(level), 1e-6);
-    color *= 1.0 - 0.45 * (1.0 - smoothstep(0.5, 1.3, away)) * clamp(2.0 - 4.0 * fwidth(level), 0.0, 1.0);
+    float levels_in_pixel = fwidth(level);
+    float away = abs(fract(level - 0.5) - 0.5) / max(levels_in_pixel, 1e-6);
+    // Neither where they would run into each other, nor on level ground that happens to lie on one.
+    float drawn = clamp(2.0 - 4.0 * levels_in_pixel, 0.0, 1.0) * smoothstep(0.0005, 0.002, levels_in_pixel);
+    color *= 1.0 - 0.45 * (1.0 - smoothstep(0.5, 1.3, away)) * drawn;
   }
   gl_FragColor = vec4(color, alpha);
 }

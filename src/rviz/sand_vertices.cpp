@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace shallow_sand {
 namespace {
 
 /// So much lies on a body that one sees it. [m]
 constexpr float kVisibleLoad = 0.001f;
+/// Sand thinner than this counts as bare bed (section 7.2 of the paper). [cells]
+constexpr float kShore = 0.1f;
 /// How high a sheet may rise from one cell to the next [cells]; what is steeper is no slope of sand.
 constexpr float kSteepest = 3.0f;
 
@@ -61,6 +64,31 @@ class Surroundings {
   const Elevation& elevation_;
 };
 
+/// Depth of the sand. Next to a shore the surface of the sand is thought to go on below the bed, so that the
+/// line at which sand ends between cells lies where it should: without teeth.
+float depthWithShore(const HeightField& map, std::int64_t i, std::int64_t j) {
+  const auto cell = [&](std::int64_t column, std::int64_t row) {
+    return static_cast<std::size_t>(row) * map.columns + static_cast<std::size_t>(column);
+  };
+  const auto isWet = [&](std::int64_t column, std::int64_t row) {
+    return column >= 0 && row >= 0 && column < map.columns && row < map.rows &&
+           map.depth[cell(column, row)] >= kShore * map.spacing;
+  };
+  const float own = map.depth[cell(i, j)];
+  if (isWet(i, j)) return own;
+  float highest = -std::numeric_limits<float>::infinity();
+  for (std::int64_t dy = -1; dy <= 1; ++dy) {
+    for (std::int64_t dx = -1; dx <= 1; ++dx) {
+      if ((dx == 0 && dy == 0) || !isWet(i + dx, j + dy)) continue;
+      const float next = groundElevation(map, cell(i + dx, j + dy));
+      const bool has_slope = isWet(i + 2 * dx, j + 2 * dy);
+      const float rise = has_slope ? next - groundElevation(map, cell(i + 2 * dx, j + 2 * dy)) : 0.0f;
+      highest = std::max(highest, next + rise - map.bed[cell(i, j)]);
+    }
+  }
+  return std::isfinite(highest) ? std::min(own, highest) : own;
+}
+
 float shownValue(const HeightField& map, std::size_t cell, const ShownValue& shown) {
   if (shown.kind == ShownValue::Kind::speed) return map.speed.empty() ? 0.0f : map.speed[cell];
   if (shown.kind == ShownValue::Kind::rise) return groundElevation(map, cell) - (*shown.start)[cell];
@@ -101,7 +129,7 @@ std::vector<SandVertex> groundVertices(const HeightField& map, const CellRectang
     SandVertex vertex;
     setPlace(map, column, row, elevation(cell), vertex);
     surroundings.setNormal(column, row, vertex);
-    vertex.depth = map.depth[cell];
+    vertex.depth = depthWithShore(map, column, row);
     vertex.value = shownValue(map, cell, shown);
     vertex.openness = surroundings.openness(column, row);
     vertices.push_back(vertex);

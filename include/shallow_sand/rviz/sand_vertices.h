@@ -13,7 +13,7 @@ namespace shallow_sand {
 struct SandVertex {
   float position[3];
   float normal[3];
-  float depth;     ///< of the sand [m]
+  float depth;     ///< of the sand [m]; negative where the surface beside it goes on below the bare bed
   float value;     ///< what colours may show: speed [m/s], or how much the surface has risen [m]
   float openness;  ///< how much of the sky the place sees, from 0 to 1: little in ruts
 };
