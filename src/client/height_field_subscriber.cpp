@@ -1,12 +1,13 @@
 #include "shallow_sand/client/height_field_subscriber.h"
 
 #include <ros/console.h>
+#include <std_msgs/Empty.h>
 
 namespace shallow_sand {
 
 namespace {
 
-/// As often it is looked whether updates wait for a map [s]; so long a map may be on its way.
+/// As often it is looked whether a map is needed [s]; so long it may be on its way.
 constexpr double kPatience = 0.5;
 
 }  // namespace
@@ -14,16 +15,13 @@ constexpr double kPatience = 0.5;
 HeightFieldSubscriber::HeightFieldSubscriber(const ros::NodeHandle& node, const std::string& topic,
                                              Callback changed)
     : node_(node), topic_(topic), changed_(std::move(changed)) {
-  subscribeToMaps();
+  requests_ = node_.advertise<std_msgs::Empty>(topic_ + "_requests", 1);
+  maps_ = node_.subscribe<HeightField>(topic_, 1, [this](const HeightField::ConstPtr& map) { take(*map); });
   // A frame of the node may be many updates.
   updates_ = node_.subscribe<HeightFieldUpdate>(
       topic_ + "_updates", 4096, [this](const HeightFieldUpdate::ConstPtr& update) { take(*update); });
-  timer_ =
-      node_.createWallTimer(ros::WallDuration(kPatience), [this](const ros::WallTimerEvent&) { heal(); });
-}
-
-void HeightFieldSubscriber::subscribeToMaps() {
-  maps_ = node_.subscribe<HeightField>(topic_, 1, [this](const HeightField::ConstPtr& map) { take(*map); });
+  timer_ = node_.createWallTimer(ros::WallDuration(kPatience),
+                                 [this](const ros::WallTimerEvent&) { askForMap(); });
 }
 
 template <class Message>
@@ -33,15 +31,10 @@ void HeightFieldSubscriber::take(const Message& message) {
   if (change.made_anew || !change.cells.empty()) changed_(*map_.field(), change);
 }
 
-void HeightFieldSubscriber::heal() {
-  const bool needs_map = map_.needsMap();
-  if (needs_map && needed_map_) {
-    // The node sends the map to each subscriber that is new.
-    maps_.shutdown();
-    subscribeToMaps();
-  }
-  // Once asked for, the map has as long again to come.
-  needed_map_ = needs_map && !needed_map_;
+void HeightFieldSubscriber::askForMap() {
+  const bool needs_map = map_.needsMap() || map_.field() == nullptr;
+  if (needs_map && needed_map_) requests_.publish(std_msgs::Empty());
+  needed_map_ = needs_map;
 }
 
 }  // namespace shallow_sand

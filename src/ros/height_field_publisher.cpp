@@ -1,6 +1,7 @@
 #include "shallow_sand/ros/height_field_publisher.h"
 
 #include <ros/single_subscriber_publisher.h>
+#include <std_msgs/Empty.h>
 
 namespace shallow_sand {
 namespace {
@@ -8,6 +9,9 @@ namespace {
 /// Updates that wait for a slow subscriber: four times what may change at once. If more would have to, it
 /// misses some, notices, and asks for a map.
 constexpr std::uint32_t kMostWaiting = 1024;
+
+/// Those who ask for a map within so long get one together [s].
+constexpr double kBetweenAnswers = 0.25;
 
 }  // namespace
 
@@ -26,7 +30,16 @@ HeightFieldPublisher::HeightFieldPublisher(ros::NodeHandle node, const Grid& gri
                                                  if (difference_.hasMap())
                                                    one.publish(difference_.sequence());
                                                });
+  requests_ = node.subscribe<std_msgs::Empty>("height_field_requests", 1,
+                                              [this](const std_msgs::EmptyConstPtr&) { answerRequest(); });
   follower_.start();
+}
+
+void HeightFieldPublisher::answerRequest() {
+  const ros::WallTime now = ros::WallTime::now();
+  if (!difference_.hasMap() || now - answered_ < ros::WallDuration(kBetweenAnswers)) return;
+  answered_ = now;
+  maps_.publish(difference_.map());
 }
 
 void HeightFieldPublisher::take(const FieldsChange& change, const ros::Time& stamp) {

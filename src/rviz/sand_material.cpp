@@ -19,9 +19,9 @@ namespace {
 
 using Palette = std::array<Ogre::ColourValue, 6>;
 
-const Palette kRelief{Ogre::ColourValue(0.14f, 0.33f, 0.44f), Ogre::ColourValue(0.23f, 0.51f, 0.46f),
-                      Ogre::ColourValue(0.60f, 0.68f, 0.42f), Ogre::ColourValue(0.91f, 0.80f, 0.52f),
-                      Ogre::ColourValue(0.79f, 0.55f, 0.33f), Ogre::ColourValue(0.96f, 0.94f, 0.90f)};
+const Palette kHeight{Ogre::ColourValue(0.27f, 0.00f, 0.33f), Ogre::ColourValue(0.25f, 0.27f, 0.53f),
+                      Ogre::ColourValue(0.16f, 0.47f, 0.56f), Ogre::ColourValue(0.13f, 0.66f, 0.52f),
+                      Ogre::ColourValue(0.48f, 0.82f, 0.32f), Ogre::ColourValue(0.99f, 0.91f, 0.15f)};
 const Palette kHeat{Ogre::ColourValue(0.20f, 0.16f, 0.36f), Ogre::ColourValue(0.47f, 0.17f, 0.45f),
                     Ogre::ColourValue(0.76f, 0.25f, 0.40f), Ogre::ColourValue(0.93f, 0.45f, 0.29f),
                     Ogre::ColourValue(0.98f, 0.70f, 0.32f), Ogre::ColourValue(0.99f, 0.95f, 0.65f)};
@@ -31,7 +31,7 @@ const Palette kCutAndFill{Ogre::ColourValue(0.10f, 0.27f, 0.55f), Ogre::ColourVa
 
 const Palette& paletteOf(ColorBy what) {
   if (what == ColorBy::change) return kCutAndFill;
-  return what == ColorBy::elevation ? kRelief : kHeat;
+  return what == ColorBy::elevation || what == ColorBy::depth ? kHeight : kHeat;
 }
 
 /// A program of the graphics card, by a name that no other has.

@@ -4,12 +4,14 @@
 
 namespace shallow_sand {
 
-/// Shades of the sand's colour: what light does to it keeps the order of red, green and blue.
+/// Shades of the sand's colour: what light does to it keeps the order of red, green and blue, and not much
+/// more than their ratios.
 inline bool isSand(QRgb pixel) {
   const int red = qRed(pixel);
   const int green = qGreen(pixel);
   const int blue = qBlue(pixel);
-  return red > 30 && red - green > 0.08 * red && green - blue > 0.08 * red && red - green < 0.35 * red;
+  return red > 30 && red - green > 0.08 * red && green - blue > 0.08 * red && red - green < 0.35 * red &&
+         blue > 0.4 * red;
 }
 
 /// From 0 to 1.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <ros/node_handle.h>
+#include <ros/publisher.h>
 #include <ros/subscriber.h>
 #include <ros/wall_timer.h>
 
@@ -12,12 +13,14 @@
 namespace shallow_sand {
 
 /// Follows the sand of a node: subscribes to its height field and the updates of that, and asks for the whole
-/// map again when updates were lost. Callbacks come from the queue of the node handle.
+/// map when none comes by itself (another subscriber of this process has had it) or updates were lost.
+/// Callbacks come from the queue of the node handle.
 class HeightFieldSubscriber {
  public:
   using Callback = std::function<void(const HeightField&, const HeightFieldMap::Change&)>;
 
-  /// @param topic of the HeightField, such as /sand_node/height_field; updates come on topic + "_updates"
+  /// @param topic of the HeightField, such as /sand_node/height_field; updates come on topic + "_updates",
+  /// and the map is asked for on topic + "_requests"
   /// @param changed is called after each message that changed the map
   HeightFieldSubscriber(const ros::NodeHandle& node, const std::string& topic, Callback changed);
   HeightFieldSubscriber(const HeightFieldSubscriber&) = delete;
@@ -29,8 +32,7 @@ class HeightFieldSubscriber {
  private:
   template <class Message>
   void take(const Message& message);
-  void subscribeToMaps();
-  void heal();
+  void askForMap();
 
   ros::NodeHandle node_;
   std::string topic_;
@@ -39,6 +41,7 @@ class HeightFieldSubscriber {
   bool needed_map_ = false;  // when it was looked the last time
   ros::Subscriber maps_;
   ros::Subscriber updates_;
+  ros::Publisher requests_;
   ros::WallTimer timer_;
 };
 

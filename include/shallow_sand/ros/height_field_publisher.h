@@ -14,6 +14,8 @@ namespace shallow_sand {
 ///   hold a map that is old, and sending it with each change would be what the updates are there to avoid;
 /// - whoever subscribes to ~height_field_updates gets an empty update at once, and knows from its sequence
 ///   whether one was missed;
+/// - whoever publishes on ~height_field_requests makes that everybody gets the whole map: after updates were
+///   lost, or in a process that has a connection already, over which none came;
 /// - then come the rectangles that have changed, at most at a rate, and nothing while nothing changes;
 /// - a bed that is another is a new map, which everybody gets.
 /// As long as nobody has listened, nothing is done.
@@ -29,11 +31,14 @@ class HeightFieldPublisher {
 
  private:
   void take(const FieldsChange& change, const ros::Time& stamp);
+  void answerRequest();
 
   HeightFieldDifference difference_;  ///< of the follower's thread, as all that follows
   FieldsFollower follower_;
   ros::Publisher maps_;
   ros::Publisher updates_;
+  ros::Subscriber requests_;
+  ros::WallTime answered_;
 };
 
 }  // namespace shallow_sand
