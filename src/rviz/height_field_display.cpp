@@ -64,7 +64,7 @@ HeightFieldDisplay::HeightFieldDisplay() {
   high_ = new rviz::FloatProperty("Max Value", 1.0f, "Last colour of the scale [m, m/s or degrees].", this,
                                   SLOT(changeColorBy()));
   contours_ = new rviz::FloatProperty("Contour Interval", 0.0f,
-                                      "Distance of contour lines in elevation [m]; 0: none.", this,
+                                      "Distance of contour lines in elevation [m], the first half of it above 0; 0: none.", this,
                                       SLOT(changeContours()));
   contours_->setMin(0.0f);
   alpha_ =

@@ -65,7 +65,8 @@ float grains(float size) {
 void main() {
   vec3 up = normalize(normal);
   vec3 sand = sand_color.rgb;
-  if (color_by > 0.5) {
+  // Only the cut along the map's sides stands upright; a scale of colours says nothing there.
+  if (color_by > 0.5 && abs(up.z) > 1e-4) {
     float shown = value;
     if (color_by < 1.5) shown = place.z;
     else if (color_by < 2.5) shown = depth;
@@ -83,12 +84,13 @@ void main() {
   float sky = (0.25 + 0.75 * openness * openness) * (0.65 + 0.35 * up.z);
   color *= 0.92 * sun * mix(0.55, 1.0, openness) * vec3(1.05, 1.0, 0.92) + 0.50 * sky * vec3(0.93, 0.98, 1.10);
 
-  if (contour_interval > 0.0) {
-    float level = place.z / contour_interval;
+  if (contour_interval > 0.0 && abs(up.z) > 1e-4) {
+    // Half an interval off, for level ground mostly lies at a round number.
+    float level = place.z / contour_interval + 0.5;
     float levels_in_pixel = fwidth(level);
     float away = abs(fract(level - 0.5) - 0.5) / max(levels_in_pixel, 1e-6);
-    // Neither where they would run into each other, nor on level ground that happens to lie on one.
-    float drawn = clamp(2.0 - 4.0 * levels_in_pixel, 0.0, 1.0) * smoothstep(0.0005, 0.002, levels_in_pixel);
+    // Not where they would run into each other.
+    float drawn = clamp(2.0 - 4.0 * levels_in_pixel, 0.0, 1.0);
     color *= 1.0 - 0.45 * (1.0 - smoothstep(0.5, 1.3, away)) * drawn;
   }
   gl_FragColor = vec4(color, alpha);
