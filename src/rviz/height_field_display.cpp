@@ -63,9 +63,10 @@ HeightFieldDisplay::HeightFieldDisplay() {
                                  SLOT(changeColorBy()));
   high_ = new rviz::FloatProperty("Max Value", 1.0f, "Last colour of the scale [m, m/s or degrees].", this,
                                   SLOT(changeColorBy()));
-  contours_ = new rviz::FloatProperty("Contour Interval", 0.0f,
-                                      "Distance of contour lines in elevation [m], the first half of it above 0; 0: none.", this,
-                                      SLOT(changeContours()));
+  contours_ = new rviz::FloatProperty(
+      "Contour Interval", 0.0f,
+      "Distance of contour lines in elevation [m], the first half of it above 0; 0: none.", this,
+      SLOT(changeContours()));
   contours_->setMin(0.0f);
   alpha_ =
       new rviz::FloatProperty("Alpha", 1.0f, "1: opaque; less: one sees through.", this, SLOT(changeShape()));
@@ -106,6 +107,7 @@ void HeightFieldDisplay::fixedFrameChanged() { place(); }
 
 void HeightFieldDisplay::reset() {
   Display::reset();
+  start_.clear();
   subscribe();
 }
 
@@ -129,7 +131,7 @@ void HeightFieldDisplay::subscribe() {
 
 void HeightFieldDisplay::take(const HeightField& map, const HeightFieldMap::Change& change) {
   if (change.made_anew) startAnew(map);
-  for (const CellRectangle& cells : change.cells) visual_->touch(map, cells);
+  for (const CellRectangle& cells : change.cells) visual_->touch(cells);
   changed_ = true;
 }
 

@@ -5,20 +5,7 @@
 namespace shallow_sand {
 namespace {
 
-/// Cells along a side of a patch: few enough that little is written for a small change, enough that the
-/// graphics card has something to do.
-constexpr std::uint32_t kPatch = 64;
 constexpr std::array<Side, 4> kSides{Side::x_min, Side::x_max, Side::y_min, Side::y_max};
-
-/// Vertices of a patch: it shares its last with the next one.
-CellRectangle verticesOf(const HeightField& map, std::uint32_t column, std::uint32_t row) {
-  const std::uint32_t i = column * kPatch;
-  const std::uint32_t j = row * kPatch;
-  return {i, j, std::min(kPatch + 1, map.columns - i), std::min(kPatch + 1, map.rows - j)};
-}
-
-/// Patches along a side. The last cell of a map begins none, for it has no neighbour to span to.
-std::uint32_t patchesAlong(std::uint32_t cells) { return cells <= 1 ? cells : (cells - 2) / kPatch + 1; }
 
 }  // namespace
 
@@ -35,6 +22,7 @@ HeightFieldVisual::~HeightFieldVisual() {
 }
 
 void HeightFieldVisual::reset(const HeightField& map) {
+  grid_ = PatchGrid(map);
   patches_.clear();
   triangles_.clear();
   touched_.clear();
@@ -49,39 +37,25 @@ void HeightFieldVisual::reset(const HeightField& map) {
   touchAll(map);
 }
 
-void HeightFieldVisual::touch(const HeightField& map, const CellRectangle& cells) {
-  const auto first = [](std::uint32_t cell) {
-    // Its first vertex belongs to the patch before, too.
-    return cell > kReachOfVertices ? (cell - kReachOfVertices - 1) / kPatch : 0;
-  };
-  const auto last = [](std::uint32_t end, std::uint32_t of) {
-    return std::min((end - 1 + kReachOfVertices) / kPatch, patchesAlong(of) - 1);
-  };
-  for (std::uint32_t row = first(cells.row); row <= last(cells.row + cells.rows, map.rows); ++row) {
-    for (std::uint32_t column = first(cells.column);
-         column <= last(cells.column + cells.columns, map.columns); ++column)
-      touched_.insert({column, row});
-  }
+void HeightFieldVisual::touch(const CellRectangle& cells) {
+  for (const PatchGrid::Number& patch : grid_.touchedBy(cells)) touched_.insert(patch);
 }
 
-void HeightFieldVisual::touchAll(const HeightField& map) { touch(map, {0, 0, map.columns, map.rows}); }
+void HeightFieldVisual::touchAll(const HeightField& map) { touch({0, 0, map.columns, map.rows}); }
 
-std::size_t HeightFieldVisual::write(const HeightField& map, const ShownValue& shown) {
-  const std::size_t written = touched_.size();
+void HeightFieldVisual::write(const HeightField& map, const ShownValue& shown) {
   bool at_side = false;
-  for (const PatchNumber& number : touched_) {
+  for (const PatchGrid::Number& number : touched_) {
     writePatch(map, number, shown);
-    at_side = at_side || number.first == 0 || number.second == 0 ||
-              number.first + 1 == patchesAlong(map.columns) || number.second + 1 == patchesAlong(map.rows);
+    at_side = at_side || grid_.isAtSide(number);
   }
   if (at_side) writeSides(map);
   touched_.clear();
-  return written;
 }
 
-void HeightFieldVisual::writePatch(const HeightField& map, const PatchNumber& number,
+void HeightFieldVisual::writePatch(const HeightField& map, const PatchGrid::Number& number,
                                    const ShownValue& shown) {
-  const CellRectangle cells = verticesOf(map, number.first, number.second);
+  const CellRectangle cells = grid_.verticesOf(number);
   if (cells.columns < 2 || cells.rows < 2) return;
   Patch& patch = patches_[number];
   if (!patch.ground) {
@@ -117,12 +91,12 @@ void HeightFieldVisual::setPose(const Ogre::Vector3& position, const Ogre::Quate
 
 void HeightFieldVisual::setMostTriangles(const HeightField& map, std::size_t most) {
   std::uint32_t stride = 1;
-  while (stride < kPatch && 2 * map.depth.size() / stride / stride > most) stride *= 2;
+  while (stride < PatchGrid::kCells && 2 * map.depth.size() / stride / stride > most) stride *= 2;
   if (stride == stride_) return;
   stride_ = stride;
   triangles_.clear();
   for (auto& [number, patch] : patches_) {
-    const CellRectangle cells = verticesOf(map, number.first, number.second);
+    const CellRectangle cells = grid_.verticesOf(number);
     patch.ground->setTriangles(trianglesOf(cells.columns, cells.rows));
   }
 }

@@ -12,6 +12,7 @@
 
 #include "shallow_sand/HeightField.h"
 #include "shallow_sand/client/height_field_map.h"
+#include "shallow_sand/rviz/patch_grid.h"
 #include "shallow_sand/rviz/sand_material.h"
 #include "shallow_sand/rviz/sand_patch.h"
 
@@ -29,11 +30,11 @@ class HeightFieldVisual {
 
   /// Starts anew with a map, of any size.
   void reset(const HeightField& map);
-  /// These cells of the map have changed.
-  void touch(const HeightField& map, const CellRectangle& cells);
+  /// These cells have changed.
+  void touch(const CellRectangle& cells);
   void touchAll(const HeightField& map);
-  /// Writes what was touched since the last time. Returns how many patches that were.
-  std::size_t write(const HeightField& map, const ShownValue& shown);
+  /// Writes what was touched since the last time.
+  void write(const HeightField& map, const ShownValue& shown);
 
   /// Of the map's frame, in the scene's.
   void setPose(const Ogre::Vector3& position, const Ogre::Quaternion& orientation);
@@ -43,13 +44,12 @@ class HeightFieldVisual {
   SandMaterial& material() { return material_; }
 
  private:
-  using PatchNumber = std::pair<std::uint32_t, std::uint32_t>;  // column, row of the patch
   struct Patch {
     std::unique_ptr<SandPatch> ground;
     std::unique_ptr<SandPatch> load;
   };
 
-  void writePatch(const HeightField& map, const PatchNumber& number, const ShownValue& shown);
+  void writePatch(const HeightField& map, const PatchGrid::Number& number, const ShownValue& shown);
   void writeSides(const HeightField& map);
   const TriangleBuffer& trianglesOf(std::uint32_t columns, std::uint32_t rows);
 
@@ -58,11 +58,12 @@ class HeightFieldVisual {
   Ogre::SceneNode* corner_node_;  // its corner
   Ogre::SceneNode* sides_node_;
   SandMaterial material_;
+  PatchGrid grid_;
   std::uint32_t stride_ = 1;
   std::map<std::pair<std::uint32_t, std::uint32_t>, TriangleBuffer> triangles_;  // of patches of a size
-  std::map<PatchNumber, Patch> patches_;
+  std::map<PatchGrid::Number, Patch> patches_;
   std::array<std::unique_ptr<SandPatch>, 4> sides_;
-  std::set<PatchNumber> touched_;
+  std::set<PatchGrid::Number> touched_;
 };
 
 }  // namespace shallow_sand
