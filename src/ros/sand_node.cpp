@@ -4,6 +4,7 @@
 
 #include "shallow_sand/Status.h"
 #include "shallow_sand/ros/conversions.h"
+#include "shallow_sand/scene/mesh_file.h"
 #include "shallow_sand/scene/picture.h"
 #include "shallow_sand/scene/report.h"
 #include "shallow_sand/scene/simulation.h"
@@ -16,7 +17,7 @@ namespace {
 /// stays responsive and a paused one does not race afterwards.
 constexpr double kLongestFrame = 0.1;
 
-/// A mesh takes 240 bytes a cell, and ROS drops messages of a gigabyte.
+/// In ~points.
 constexpr std::size_t kMostCellsShown = 4000000;
 
 Simulator build(const Scene& scene) {
@@ -91,21 +92,22 @@ void SandNode::advance(const ros::Time& time) {
 
 void SandNode::publishSurface(const ros::Time& time) {
   const std::string& frame = parameters_.scene.parameters.grid.frame;
-  if (simulator_.grid().cells() > kMostCellsShown) {
-    ROS_WARN_STREAM_ONCE(simulator_.grid().cells()
-                         << " cells are more than a message can hold; ~points and ~mesh stay "
-                         << "silent above " << kMostCellsShown);
-    last_surface_ = time;
-    return;
+  const bool with_points = simulator_.grid().cells() <= kMostCellsShown;
+  if (!with_points) {
+    ROS_WARN_STREAM_ONCE("~points stays silent: " << simulator_.grid().cells() << " cells are more than "
+                                                  << kMostCellsShown);
   }
-  const Fields fields = simulator_.fields();
-  points_.publish(toPointCloud(simulator_.grid(), fields, frame, time));
   // A mesh takes forty bytes a corner: made only when somebody looks, or once, so that whoever comes later
   // sees sand.
-  if (mesh_.getNumSubscribers() > 0 || last_surface_.isZero()) {
-    mesh_.publish(toMarker(simulator_.grid(), fields, frame, time));
-  }
+  const bool with_mesh = mesh_.getNumSubscribers() > 0 || last_surface_.isZero();
   last_surface_ = time;
+  if (!with_points && !with_mesh) return;
+  const Fields fields = simulator_.fields();
+  if (with_points) points_.publish(toPointCloud(simulator_.grid(), fields, frame, time));
+  if (with_mesh) {
+    mesh_.publish(
+        toMarker(simulator_.grid(), fields, static_cast<std::size_t>(parameters_.mesh_cells), frame, time));
+  }
 }
 
 void SandNode::publishStatus(const ros::Time& time) {
@@ -141,6 +143,9 @@ void SandNode::writeResults() const {
     writeReport(parameters_.report, makeReport(simulator_, parameters_.scene.name, busy_));
   }
   if (!parameters_.picture.empty()) writePicture(parameters_.picture, simulator_.grid(), simulator_.fields());
+  if (!parameters_.mesh_file.empty()) {
+    writeMesh(parameters_.mesh_file, surfaceMesh(simulator_.grid(), simulator_.fields()));
+  }
 }
 
 }  // namespace shallow_sand

@@ -23,7 +23,7 @@ namespace shallow_sand {
 /// time goes backwards the sand goes on from there;
 /// - serves ~add_body, ~move_body and ~remove_body; meshes are read and sampled beside the sand;
 /// - publishes ~points, ~mesh (latched, at ~publish_rate) and ~status (latched, once a second);
-/// - at the end writes ~report and ~picture.
+/// - at the end writes ~report, ~picture and ~mesh_file.
 class SandNode {
  public:
   /// @throws SceneError
