@@ -83,16 +83,18 @@ void writePly(const SurfaceMesh& mesh, BinaryFile& file) {
   std::ostringstream header;
   header << "ply\nformat binary_little_endian 1.0\ncomment shallow_sand, metres\nelement vertex "
          << mesh.positions.size();
-  for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) header << "\nproperty float " << name;
+  // Colours go first: assimp, so rviz, too, cannot read a file whose numbers begin with a byte 10, as those
+  // of x = 0.01 do. No colour is that dark.
   for (const char* name : {"red", "green", "blue"}) header << "\nproperty uchar " << name;
+  for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) header << "\nproperty float " << name;
   header << "\nelement face " << mesh.triangles() << "\nproperty list uchar int vertex_indices\nend_header\n";
   file.text(header.str());
   for (std::size_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {
-    file.vector(mesh.positions[vertex].cast<float>());
-    file.vector(mesh.normals[vertex]);
     const Eigen::Vector3f colour = mesh.colour(vertex);
     for (const float channel : {colour.x(), colour.y(), colour.z()})
       file.byte(static_cast<std::uint32_t>(255.0f * channel + 0.5f));
+    file.vector(mesh.positions[vertex].cast<float>());
+    file.vector(mesh.normals[vertex]);
   }
   forEachTriangle(mesh, [&](const SurfaceMesh::Triangle& triangle) {
     file.byte(3);

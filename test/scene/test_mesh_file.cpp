@@ -122,25 +122,25 @@ TEST_F(MeshFile, PlyHoldsVerticesWithNormalsAndColours) {
   const std::vector<std::string> expected{"ply",
                                           "format binary_little_endian 1.0",
                                           "element vertex " + std::to_string(mesh_.positions.size()),
+                                          "property uchar red",
+                                          "property uchar green",
+                                          "property uchar blue",
                                           "property float x",
                                           "property float y",
                                           "property float z",
                                           "property float nx",
                                           "property float ny",
                                           "property float nz",
-                                          "property uchar red",
-                                          "property uchar green",
-                                          "property uchar blue",
                                           "element face " + std::to_string(triangles.size()),
                                           "property list uchar int vertex_indices",
                                           "end_header"};
   ASSERT_EQ(header, expected);
   for (std::size_t vertex = 0; vertex < mesh_.positions.size(); ++vertex) {
-    EXPECT_EQ(bytes.nextVector(), mesh_.positions[vertex].cast<float>());
-    EXPECT_EQ(bytes.nextVector(), mesh_.normals[vertex]);
     const Eigen::Vector3f colour = mesh_.colour(vertex);
     for (int channel = 0; channel < 3; ++channel)
       EXPECT_NEAR(bytes.next<std::uint8_t>(), 255.0f * colour[channel], 0.501f);
+    EXPECT_EQ(bytes.nextVector(), mesh_.positions[vertex].cast<float>());
+    EXPECT_EQ(bytes.nextVector(), mesh_.normals[vertex]);
   }
   for (const auto& triangle : triangles) {
     EXPECT_EQ(bytes.next<std::uint8_t>(), 3);
@@ -149,21 +149,35 @@ TEST_F(MeshFile, PlyHoldsVerticesWithNormalsAndColours) {
   EXPECT_TRUE(bytes.atEnd());
 }
 
-TEST_F(MeshFile, OthersReadTheSameTriangles) {
-  for (const std::string name : {"sand.stl", "sand.ply", "SAND.STL"}) {
-    writeMesh(path(name), mesh_);
-    const TriangleMesh read = readMesh("file://" + path(name), Eigen::Vector3d::Ones());
-    const std::vector<SurfaceMesh::Triangle> triangles = allTriangles(mesh_);
-    ASSERT_EQ(read.triangles.size(), triangles.size()) << name;
-    for (std::size_t k = 0; k < triangles.size(); ++k) {
-      for (int corner = 0; corner < 3; ++corner) {
-        const Eigen::Vector3d& position = mesh_.positions[triangles[k][corner]];
-        EXPECT_EQ(read.vertices[static_cast<std::size_t>(read.triangles[k][corner])].cast<float>(),
-                  position.cast<float>())
-            << name;
-      }
+/// By assimp, as rviz does.
+void expectReadBack(const std::string& path, const SurfaceMesh& mesh) {
+  const TriangleMesh read = readMesh("file://" + path, Eigen::Vector3d::Ones());
+  const std::vector<SurfaceMesh::Triangle> triangles = allTriangles(mesh);
+  ASSERT_EQ(read.triangles.size(), triangles.size());
+  for (std::size_t k = 0; k < triangles.size(); ++k) {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const auto vertex = static_cast<std::size_t>(read.triangles[k][corner]);
+      EXPECT_EQ(read.vertices[vertex].cast<float>(), mesh.positions[triangles[k][corner]].cast<float>());
     }
   }
+}
+
+TEST_F(MeshFile, OthersReadTheSameTriangles) {
+  for (const std::string name : {"sand.stl", "sand.ply", "SAND.STL"}) {
+    SCOPED_TRACE(name);
+    writeMesh(path(name), mesh_);
+    expectReadBack(path(name), mesh_);
+  }
+}
+
+TEST_F(MeshFile, OthersReadAMeshThatBeginsAtACentimetre) {
+  const Grid grid{3, 3, 0.02f, 0.0, 0.0};
+  Fields fields;
+  fields.bed.assign(grid.cells(), 0.0f);
+  fields.depth.assign(grid.cells(), 0.3f);
+  const SurfaceMesh mesh = surfaceMesh(grid, fields);
+  writeMesh(path("centimetre.ply"), mesh);
+  expectReadBack(path("centimetre.ply"), mesh);
 }
 
 TEST_F(MeshFile, TakesThePlaceOfAnOlderOneWhenItIsComplete) {

@@ -339,7 +339,7 @@ TEST(SurfaceMesh, NormalsConvergeWithSecondOrder) {
   const Shapes bed{waves, [](double, double) { return -9.0; }};
   for (const Shapes* shapes : {&sand, &bed}) {
     std::vector<double> inside, at_rim;
-    for (const int side : {16, 32, 64, 128}) {
+    for (const int side : {32, 64, 128}) {
       const Grid grid = squareMetre(side);
       const SurfaceMesh mesh = surfaceMesh(grid, shapes->fields(grid));
       double worst_inside = 0.0, worst_at_rim = 0.0;
@@ -364,8 +364,8 @@ TEST(SurfaceMesh, NormalsAtTheShoreAreThoseOfEachMaterial) {
   std::mt19937 random = seededGenerator();
   const Elevation waves = wavesOf(random);
   const Shapes shapes{waves, [](double x, double y) { return 0.3 * x - 0.2 * y + 0.2 * (x * x + y * y); }};
-  std::vector<double> sand, bed;
-  for (const int side : {32, 64, 128, 256}) {
+  std::vector<double> bed;
+  for (const int side : {64, 128, 256, 512}) {
     const Grid grid = squareMetre(side);
     const SurfaceMesh mesh = surfaceMesh(grid, shapes.fields(grid));
     double worst_sand = 0.0, worst_bed = 0.0;
@@ -379,7 +379,6 @@ TEST(SurfaceMesh, NormalsAtTheShoreAreThoseOfEachMaterial) {
       worst_bed = std::max(worst_bed, error(vertex + 1, shapes.bed));
     }
     EXPECT_LT(worst_sand, 4.0 / side);
-    sand.push_back(worst_sand);
     bed.push_back(worst_bed);
   }
   expectOrder(bed, 1.8, "normals of the bed");

@@ -24,7 +24,7 @@ inline Eigen::Vector3f surfaceColour(SurfaceMaterial material, const Eigen::Vect
   // 1 on level ground. What is turned away from the sun still has light from the sky, the less the more.
   const float sun = normal.z() - 0.5f * normal.x() + 0.5f * normal.y();
   const float towards = 0.5f * (1.0f + sun);
-  return ((0.25f + 0.75f * towards * towards) * own).cwiseMin(1.0f);
+  return ((0.2f + 0.8f * towards * towards) * own).cwiseMin(1.0f);
 }
 
 /// The colour of what one sees from above at the centre of each cell: the load where there is one, else the
