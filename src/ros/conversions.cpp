@@ -80,7 +80,8 @@ visualization_msgs::Marker toMarker(const Grid& grid, const Fields& fields, std:
   marker.color.a = 1.0f;
   const SurfaceMesh mesh = surfaceMesh(grid, fields, finestLevel(grid, most_cells));
   std::vector<std_msgs::ColorRGBA> colors(mesh.positions.size());
-  for (std::size_t vertex = 0; vertex < colors.size(); ++vertex) colors[vertex] = toColor(mesh.colour(vertex));
+  for (std::size_t vertex = 0; vertex < colors.size(); ++vertex)
+    colors[vertex] = toColor(mesh.colour(vertex));
   marker.points.reserve(3 * mesh.triangles());
   marker.colors.reserve(3 * mesh.triangles());
   for (const auto* triangles : {&mesh.sand, &mesh.bed, &mesh.loads}) {
