@@ -2,26 +2,38 @@
 
 #include <sensor_msgs/point_cloud2_iterator.h>
 
-#include "shallow_sand/surface/surface.h"
+#include <cstring>
+
+#include "shallow_sand/surface/blocks.h"
+#include "shallow_sand/surface/surface_mesh.h"
 
 namespace shallow_sand {
 namespace {
 
-void add(visualization_msgs::Marker& marker, const Surface& surface,
-         const std::vector<std::size_t>& corners) {
-  for (const std::size_t corner : corners) {
-    geometry_msgs::Point point;
-    point.x = surface.points[corner].x();
-    point.y = surface.points[corner].y();
-    point.z = surface.points[corner].z();
-    marker.points.push_back(point);
-    std_msgs::ColorRGBA color;
-    color.r = surface.colors[corner].x();
-    color.g = surface.colors[corner].y();
-    color.b = surface.colors[corner].z();
-    color.a = 1.0f;
-    marker.colors.push_back(color);
-  }
+geometry_msgs::Point toPoint(const Eigen::Vector3d& position) {
+  geometry_msgs::Point point;
+  point.x = position.x();
+  point.y = position.y();
+  point.z = position.z();
+  return point;
+}
+
+std_msgs::ColorRGBA toColor(const Eigen::Vector3f& colour) {
+  std_msgs::ColorRGBA color;
+  color.r = colour.x();
+  color.g = colour.y();
+  color.b = colour.z();
+  color.a = 1.0f;
+  return color;
+}
+
+/// 0x00rrggbb in the bits of a float.
+float packed(const Eigen::Vector3f& colour) {
+  const Eigen::Array<std::uint32_t, 3, 1> bytes = (255.0f * colour.array() + 0.5f).cast<std::uint32_t>();
+  const std::uint32_t bits = bytes[0] << 16 | bytes[1] << 8 | bytes[2];
+  float value;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
 }
 
 }  // namespace
@@ -34,11 +46,13 @@ sensor_msgs::PointCloud2 toPointCloud(const Grid& grid, const Fields& fields, co
   cloud.is_dense = true;
   sensor_msgs::PointCloud2Modifier modifier(cloud);
   constexpr int kFloat = sensor_msgs::PointField::FLOAT32;
-  modifier.setPointCloud2Fields(4, "x", 1, kFloat, "y", 1, kFloat, "z", 1, kFloat, "intensity", 1, kFloat);
+  modifier.setPointCloud2Fields(5, "x", 1, kFloat, "y", 1, kFloat, "z", 1, kFloat, "intensity", 1, kFloat,
+                                "rgb", 1, kFloat);
   modifier.resize(grid.cells());
   cloud.width = static_cast<std::uint32_t>(grid.columns);
   cloud.height = static_cast<std::uint32_t>(grid.rows);
   cloud.row_step = cloud.width * cloud.point_step;
+  const std::vector<Eigen::Vector3f> colours = visibleColours(grid, fields);
   sensor_msgs::PointCloud2Iterator<float> value(cloud, "x");
   for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i, ++value) {
@@ -47,13 +61,14 @@ sensor_msgs::PointCloud2 toPointCloud(const Grid& grid, const Fields& fields, co
       value[1] = static_cast<float>(grid.y(j));
       value[2] = fields.surface(k);
       value[3] = fields.allDepth(k);
+      value[4] = packed(colours[k]);
     }
   }
   return cloud;
 }
 
-visualization_msgs::Marker toMarker(const Grid& grid, const Fields& fields, const std::string& frame,
-                                    const ros::Time& stamp) {
+visualization_msgs::Marker toMarker(const Grid& grid, const Fields& fields, std::size_t most_cells,
+                                    const std::string& frame, const ros::Time& stamp) {
   visualization_msgs::Marker marker;
   marker.header.frame_id = frame;
   marker.header.stamp = stamp;
@@ -63,12 +78,20 @@ visualization_msgs::Marker toMarker(const Grid& grid, const Fields& fields, cons
   marker.pose.orientation.w = 1.0;
   marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
   marker.color.a = 1.0f;
-  const std::vector<std::size_t> ground = surfaceTriangles(grid);
-  const std::vector<std::size_t> loads = loadTriangles(grid, fields);
-  marker.points.reserve(ground.size() + loads.size());
-  marker.colors.reserve(ground.size() + loads.size());
-  add(marker, groundSurface(grid, fields), ground);
-  if (!loads.empty()) add(marker, visibleSurface(grid, fields), loads);
+  const SurfaceMesh mesh = surfaceMesh(grid, fields, finestLevel(grid, most_cells));
+  std::vector<std_msgs::ColorRGBA> colors(mesh.positions.size());
+  for (std::size_t vertex = 0; vertex < colors.size(); ++vertex)
+    colors[vertex] = toColor(mesh.colour(vertex));
+  marker.points.reserve(3 * mesh.triangles());
+  marker.colors.reserve(3 * mesh.triangles());
+  for (const auto* triangles : {&mesh.sand, &mesh.bed, &mesh.loads}) {
+    for (const SurfaceMesh::Triangle& triangle : *triangles) {
+      for (const std::uint32_t corner : triangle) {
+        marker.points.push_back(toPoint(mesh.positions[corner]));
+        marker.colors.push_back(colors[corner]);
+      }
+    }
+  }
   return marker;
 }
 

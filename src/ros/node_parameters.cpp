@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <sstream>
 
+#include "shallow_sand/ros/conversions.h"
+#include "shallow_sand/scene/mesh_file.h"
+
 namespace shallow_sand {
 
 namespace {
@@ -54,6 +57,16 @@ void takeBetween(YAML::Node& parameters, const std::string& source, const std::s
   take(parameters, source, key, expected, value);
   if (value >= low && value <= high) return;
   throw SceneError(source + ": " + key + ": " + std::to_string(value) + "; expected " + expected);
+}
+
+void takeMeshFile(YAML::Node& parameters, const std::string& source, std::string& path) {
+  const std::string key = "mesh_file";
+  take(parameters, source, key, "the path of a file", path);
+  try {
+    if (!path.empty()) requireMeshSuffix(key, path);
+  } catch (const InvalidParameter& problem) {
+    throw SceneError(source + ": " + problem.what());
+  }
 }
 
 /// Which links of a robot dig, and as what.
@@ -133,10 +146,12 @@ NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
   parameters.robots = takeRobots(yaml, source);
   take(yaml, source, "report", "the path of a file", parameters.report);
   take(yaml, source, "picture", "the path of a file", parameters.picture);
+  takeMeshFile(yaml, source, parameters.mesh_file);
   takeBetween(yaml, source, "frame_rate", 0.01, 1e4, "hertz", parameters.frame_rate);
   takeBetween(yaml, source, "publish_rate", 0.01, 1e4, "hertz", parameters.publish_rate);
   takeBetween(yaml, source, "height_field_rate", 0.01, 1e4, "hertz", parameters.height_field_rate);
   take(yaml, source, "publish_speed", "true or false", parameters.publish_speed);
+  takeBetween(yaml, source, "mesh_cells", 100.0, kMostMarkerCells, "cells", parameters.mesh_cells);
   // tf keeps ten seconds.
   takeBetween(yaml, source, "tf_delay", 0.0, 5.0, "seconds", parameters.tf_delay);
   takeBetween(yaml, source, "tf_timeout", 0.001, 1e6, "seconds", parameters.tf_timeout);

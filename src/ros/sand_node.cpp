@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "shallow_sand/Status.h"
+#include "shallow_sand/scene/mesh_file.h"
 #include "shallow_sand/scene/picture.h"
 #include "shallow_sand/scene/report.h"
 #include "shallow_sand/scene/simulation.h"
@@ -37,7 +38,7 @@ SandNode::SandNode()
       height_field_(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
                     constantsOf(simulator_), parameters_.height_field_rate, parameters_.publish_speed),
       surface_(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
-               parameters_.publish_rate) {
+               parameters_.publish_rate, static_cast<std::size_t>(parameters_.mesh_cells)) {
   for (const RobotParameters& robot : parameters_.robots) {
     robots_.emplace_back(robot, parameters_.robots.size() == 1, simulator_.grid().spacing);
   }
@@ -148,6 +149,9 @@ void SandNode::writeResults() const {
     writeReport(parameters_.report, makeReport(simulator_, parameters_.scene.name, busy_));
   }
   if (!parameters_.picture.empty()) writePicture(parameters_.picture, simulator_.grid(), simulator_.fields());
+  if (!parameters_.mesh_file.empty()) {
+    writeMesh(parameters_.mesh_file, surfaceMesh(simulator_.grid(), simulator_.fields()));
+  }
 }
 
 }  // namespace shallow_sand

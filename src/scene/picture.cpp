@@ -10,6 +10,7 @@
 #include "canvas.h"
 #include "gdal_support.h"
 #include "raster.h"
+#include "shallow_sand/surface/surface_colour.h"
 
 namespace shallow_sand {
 namespace {
@@ -192,7 +193,7 @@ void writePicture(const std::string& path, const Grid& grid, const Fields& field
   Canvas canvas(width, height, kPaper);
   canvas.fillRectangle(kPictureBorder - 2, kPictureBorder - 2, relief.surface.width + 4,
                        relief.surface.height + 4, kInk);
-  paintRelief(relief, 0.1f * grid.spacing, canvas);
+  paintRelief(relief, bareDepth(grid), canvas);
   for (const Outline& outline : outlines) {
     drawOutline(outline, grid, relief.pixel, canvas);
   }

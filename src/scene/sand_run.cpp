@@ -9,6 +9,7 @@
 #include "shallow_sand/bodies/shape.h"
 #include "shallow_sand/device/passive_threads.h"
 #include "shallow_sand/scene/geotiff.h"
+#include "shallow_sand/scene/mesh_file.h"
 #include "shallow_sand/scene/picture.h"
 #include "shallow_sand/scene/report.h"
 #include "shallow_sand/scene/scene.h"
@@ -29,6 +30,7 @@ struct Options {
   std::string save;
   std::string report;
   std::string picture;
+  std::string mesh;
 };
 
 void declareOptions(CLI::App& app, Options& options) {
@@ -41,6 +43,8 @@ void declareOptions(CLI::App& app, Options& options) {
   app.add_option("--save", options.save, "Write the state at the end to this GeoTIFF");
   app.add_option("--report", options.report, "Write the figures of the run to this JSON file");
   app.add_option("--picture", options.picture, "Write a shaded relief of the end to this PNG");
+  app.add_option("--mesh", options.mesh,
+                 "Write the surface at the end as triangles to this .stl, or .ply with colours");
   app.set_version_flag("--version", SHALLOW_SAND_VERSION);
 }
 
@@ -144,7 +148,10 @@ void writeResults(const Options& options, const Scene& scene, const Simulator& s
   if (!options.picture.empty()) {
     writePicture(options.picture, simulator.grid(), simulator.fields(), footprints(scene, simulator.time()));
   }
-  for (const std::string& path : {options.save, options.report, options.picture}) {
+  if (!options.mesh.empty()) {
+    writeMesh(options.mesh, surfaceMesh(simulator.grid(), simulator.fields()));
+  }
+  for (const std::string& path : {options.save, options.report, options.picture, options.mesh}) {
     if (!path.empty()) {
       std::printf("wrote %s\n", path.c_str());
     }
@@ -166,6 +173,10 @@ void runScene(const Options& options) {
   requireWritable("--save", options.save);
   requireWritable("--report", options.report);
   requireWritable("--picture", options.picture);
+  if (!options.mesh.empty()) {
+    requireMeshSuffix("--mesh", options.mesh);
+    requireWritable("--mesh", options.mesh);
+  }
   std::vector<std::string> notes;
   Simulator simulator = buildSimulator(scene, &notes);
   for (const std::string& note : notes) {

@@ -9,6 +9,7 @@
 #include "benchmark/quiet_maps.h"
 #include "benchmark/references.h"
 #include "benchmark/timing.h"
+#include "shallow_sand/surface/surface_mesh.h"
 
 /// Everything that a ratio compares runs by turns, so that what else a machine does falls on both.
 namespace shallow_sand {
@@ -63,6 +64,23 @@ void resting(benchmark::State& state) {
   measureResting(state, restingSand(4096, 2, state.range(0) != 0 ? Edge::open : Edge::wall));
 }
 
+/// The mesh of a pool of sand between bare slopes.
+void surface(benchmark::State& state) {
+  const int side = static_cast<int>(state.range(0));
+  const Map map = sloshingPit(side, side / 2, side / 4, 1);
+  const Simulator simulator = map.simulator();
+  const Grid& grid = simulator.grid();
+  const Fields fields = simulator.fields();
+  Timing cells;
+  for (auto _ : state) {
+    const double seconds = secondsOf([&] { benchmark::DoNotOptimize(surfaceMesh(grid, fields)); });
+    state.SetIterationTime(seconds);
+    cells.add(seconds, static_cast<double>(grid.cells()));
+  }
+  state.counters["cells_per_second"] = 1.0 / cells.typical();
+  state.counters["best_cells_per_second"] = 1.0 / cells.best();
+}
+
 /// Two threads by turns with one, beside other processes that are busy on every core.
 void besideBusyProcesses(benchmark::State& state) {
   const int side = static_cast<int>(state.range(0));
@@ -95,6 +113,7 @@ void registerCpuBenchmarks() {
       ->Arg(0)
       ->Arg(1)
       ->Unit(benchmark::kMicrosecond);
+  add("surface", surface)->ArgNames({"side"})->Arg(64)->Arg(512)->Arg(1024)->Unit(benchmark::kMillisecond);
   add("beside_busy_processes", besideBusyProcesses)
       ->ArgNames({"side", "others"})
       ->ArgsProduct({{64, 256, 1024}, {0, 1, 2}});

@@ -107,7 +107,7 @@ def wait_for_depth(node, x, y, condition, limit=20.0):
         cloud = rospy.wait_for_message(node.name + "/points", PointCloud2, timeout=10.0)
         values = numpy.frombuffer(cloud.data, dtype=numpy.float32).reshape(cloud.height, cloud.width, -1)
         spacing = SCENE["grid"]["spacing"]
-        depth = values[int(y / spacing), int(x / spacing), -1]
+        depth = values[int(y / spacing), int(x / spacing), 3]
         if condition(depth):
             return
     raise AssertionError(f"the depth at ({x}, {y}) is not as wanted within {limit} s but {depth}")

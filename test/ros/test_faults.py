@@ -76,6 +76,8 @@ class Faults(unittest.TestCase):
         self.expect_refusal("typo", {"sands": []}, "sands", "sand")
         self.expect_refusal("rate", {"frame_rate": -1.0}, "frame_rate", "hertz")
         self.expect_refusal("delay", {"tf_delay": 60.0}, "tf_delay", "seconds", "60")
+        self.expect_refusal("mesh_cells", {"mesh_cells": 1e9}, "mesh_cells", "cells", "1e+06")
+        self.expect_refusal("mesh_file", {"mesh_file": "sand.obj"}, "mesh_file", "sand.obj", ".stl or .ply")
         self.expect_refusal("pattern", {"include": "bucket"}, "include", "bucket", "list of patterns")
         self.expect_refusal("no_list", {"robots": "r2d2"}, "robots", "r2d2", "list of maps")
         self.expect_refusal("no_map", {"robots": ["r2d2"]}, "robots[0]", "r2d2", "map")

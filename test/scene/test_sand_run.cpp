@@ -72,6 +72,8 @@ TEST(SandRun, RefusesBadFilesBeforeItRuns) {
     expectRefused(scene + " --duration 1e9 " + option + " no_such_folder/result", "no_such_folder");
     expectRefused(scene + " --duration 1e9 " + option + " .", option);
   }
+  expectRefused(scene + " --duration 1e9 --mesh no_such_folder/result.stl", "no_such_folder");
+  expectRefused(scene + " --duration 1e9 --mesh sand.obj", "--mesh: sand.obj; expected a file that ends in");
 }
 
 TEST(SandRun, RefusesBadScenes) {
@@ -89,7 +91,7 @@ TEST(SandRun, RefusesBadScenes) {
 TEST(SandRun, WritesWhatItPromises) {
   const std::string scene = sceneFile(kSmallScene);
   const Outcome outcome =
-      sandRun(scene + " --backend cpu --threads 1 --save s.tif --report r.json --picture p.png");
+      sandRun(scene + " --backend cpu --threads 1 --save s.tif --report r.json --picture p.png --mesh m.ply");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
   const auto report = nlohmann::json::parse(contentsOf("r.json"));
   std::set<std::string> keys;
@@ -124,6 +126,7 @@ TEST(SandRun, WritesWhatItPromises) {
   EXPECT_LT(report["volume_error"].get<double>(), 1e-6);
   EXPECT_FALSE(contentsOf("s.tif").empty());
   EXPECT_FALSE(contentsOf("p.png").empty());
+  EXPECT_EQ(contentsOf("m.ply").rfind("ply\n", 0), 0u);
 }
 
 TEST(SandRun, SaysWhatItCanDo) {

@@ -31,8 +31,10 @@ struct NodeParameters {
   double tf_delay = 0.1;         ///< of the sand behind ROS time, so that the poses it needs have come [s]
   double tf_timeout = 1.0;       ///< older poses are stale [s]
   double max_body_speed = 10.0;  ///< of a body's farthest point; what is faster is a jump [m/s]
+  double mesh_cells = 1e6;       ///< most cells that ~mesh shows; a larger map is shown by blocks of cells
   std::string report;            ///< file for the figures at the end; empty: none
   std::string picture;           ///< file for a shaded relief at the end; empty: none
+  std::string mesh_file;         ///< .stl or .ply for the surface at the end; empty: none
 };
 
 /// Reads and checks the private parameters. @throws SceneError naming the parameter

@@ -28,7 +28,7 @@ namespace shallow_sand {
 /// - publishes ~points, ~mesh (latched, at ~publish_rate), ~height_field and its updates, each beside the
 /// sand: the sand hands over what has changed, on the GPU while the next frame runs, and waits for nobody;
 /// - publishes ~status (latched, once a second);
-/// - at the end writes ~report and ~picture.
+/// - at the end writes ~report, ~picture and ~mesh_file.
 class SandNode {
  public:
   /// @throws SceneError

@@ -12,7 +12,9 @@ namespace shallow_sand {
 class SurfacePublisher {
  public:
   /// @param node whose name the topics begin with @param rate of both [Hz]
-  SurfacePublisher(ros::NodeHandle node, const Grid& grid, const std::string& frame, double rate);
+  /// @param most_mesh_cells in ~mesh; a larger map is shown by blocks of cells
+  SurfacePublisher(ros::NodeHandle node, const Grid& grid, const std::string& frame, double rate,
+                   std::size_t most_mesh_cells);
   ~SurfacePublisher() { follower_.stop(); }
 
   /// What the sand's thread hands fields to.
@@ -23,6 +25,7 @@ class SurfacePublisher {
 
   Grid grid_;
   std::string frame_;
+  std::size_t most_mesh_cells_;
   Fields fields_;  ///< of the follower's thread, as all that follows
   FieldsFollower follower_;
   ros::Publisher points_;
