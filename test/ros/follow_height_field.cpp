@@ -1,6 +1,7 @@
-// follow_height_field TOPIC [LOSE]: follows a height field in a process of its own. Whoever subscribes to
-// ~copy gets its copy as it is then. With LOSE it gets all through a relay that loses every LOSE-th update,
-// but, as queues do, never the last one. At its end it prints how late updates came [s].
+// follow_height_field TOPIC [LOSE]: follows a height field in a process of its own, twice; the second time
+// from a little later on. Whoever subscribes to ~copy or ~second_copy gets that copy as it is then. With LOSE
+// it gets all through a relay that loses every LOSE-th update, but, as queues do, never the last one. At its
+// end it prints how late updates came [s].
 #include <ros/ros.h>
 #include <ros/single_subscriber_publisher.h>
 
@@ -56,12 +57,13 @@ class LossyRelay {
   ros::WallTimer timer_;
 };
 
-void report(std::vector<double> delays, std::size_t updates) {
+/// @param duration from the first to the last [s]
+void report(std::vector<double> delays, std::size_t updates, double duration) {
   std::sort(delays.begin(), delays.end());
   if (delays.empty()) return;
   std::cout << "{\"updates\": " << updates << ", \"instants\": " << delays.size()
-            << ", \"median\": " << delays[delays.size() / 2] << ", \"max\": " << delays.back() << "}"
-            << std::endl;
+            << ", \"median\": " << delays[delays.size() / 2] << ", \"max\": " << delays.back()
+            << ", \"duration\": " << duration << "}" << std::endl;
 }
 
 void follow(const std::string& topic, int lose) {
@@ -75,6 +77,7 @@ void follow(const std::string& topic, int lose) {
   // Of the last update of each instant of the sand.
   std::vector<double> delays;
   std::size_t updates = 0;
+  ros::Time first;
   ros::Time last;
   HeightFieldSubscriber follower(ros::NodeHandle(), source,
                                  [&](const HeightField& field, const HeightFieldMap::Change& change) {
@@ -82,14 +85,27 @@ void follow(const std::string& topic, int lose) {
                                    ++updates;
                                    if (field.header.stamp != last || delays.empty()) delays.push_back(0.0);
                                    last = field.header.stamp;
+                                   if (first.isZero()) first = last;
                                    delays.back() = (ros::Time::now() - last).toSec();
                                  });
-  const ros::Publisher copy =
-      node.advertise<HeightField>("copy", 1, [&follower](const ros::SingleSubscriberPublisher& one) {
-        if (follower.field() != nullptr) one.publish(*follower.field());
-      });
+  std::unique_ptr<HeightFieldSubscriber> second;
+  const ros::WallTimer later = node.createWallTimer(
+      ros::WallDuration(0.5),
+      [&](const ros::WallTimerEvent&) {
+        second = std::make_unique<HeightFieldSubscriber>(
+            ros::NodeHandle(), source, [](const HeightField&, const HeightFieldMap::Change&) {});
+      },
+      true);
+  const auto offer = [&node](const std::string& name, const auto& field) {
+    return node.advertise<HeightField>(name, 1, [field](const ros::SingleSubscriberPublisher& one) {
+      if (field() != nullptr) one.publish(*field());
+    });
+  };
+  const ros::Publisher copy = offer("copy", [&follower] { return follower.field(); });
+  const ros::Publisher second_copy =
+      offer("second_copy", [&second] { return second ? second->field() : nullptr; });
   ros::spin();
-  report(delays, updates);
+  report(delays, updates, (last - first).toSec());
 }
 
 }  // namespace

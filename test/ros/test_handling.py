@@ -150,7 +150,8 @@ class Handling(unittest.TestCase):
             self.assertTrue(call["move_body"](name="post", pose=at(0.3, 0.2, 0.2)).success)
             seen.wait(lambda array: any(m.ns == "post" and m.pose.position.x == 0.3 for m in array.markers), "the move")
             self.assertTrue(call["remove_body"](name="ball").success)
-            seen.wait(lambda array: len(array.markers) == 2, "the ball has gone")
+            seen.wait(lambda array: any(marker.action == Marker.DELETE for marker in array.markers), "the ball has gone")
+            self.assertEqual(sorted(m.ns for m in seen.messages[-1].markers if m.action == Marker.ADD), ["bucket", "post"])
             removed = [m for array in seen.messages for m in array.markers if m.action == Marker.DELETE]
             self.assertEqual([(m.ns, m.id) for m in removed], [("ball", looks["ball"].id)])
             node.assert_well(self)
