@@ -100,13 +100,13 @@ inline void followRandomRun(std::mt19937& random, RandomScene scene, Backend bac
   }
 }
 
-/// Random runs of sand, most of which sleeps in every other one.
-inline void followRandomRuns(std::mt19937& random, int runs, Backend backend) {
+/// Random runs of sand on grids up to a size; in every other one most of it sleeps.
+inline void followRandomRuns(std::mt19937& random, int runs, const Size& largest, Backend backend) {
   for (int run = 0; run < runs; ++run) {
     SCOPED_TRACE(run);
-    RandomSand sand = random() % 2 == 0
-                          ? heldSand(random, randomCount(random, 20, 150), randomCount(random, 9, 90))
-                          : randomSand(random, randomCount(random, 5, 90), randomCount(random, 5, 60));
+    const int columns = randomCount(random, 5, largest.columns);
+    const int rows = randomCount(random, 5, largest.rows);
+    RandomSand sand = random() % 2 == 0 ? heldSand(random, columns, rows) : randomSand(random, columns, rows);
     sand.parameters.displacement = random() % 4 != 0;
     const int pours = randomCount(random, 0, 2);
     followRandomRun(random, randomScene(random, sand, pours, randomCount(random, 0, 2)), backend);

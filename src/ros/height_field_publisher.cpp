@@ -1,5 +1,6 @@
 #include "shallow_sand/ros/height_field_publisher.h"
 
+#include <ros/console.h>
 #include <ros/single_subscriber_publisher.h>
 
 namespace shallow_sand {
@@ -9,6 +10,9 @@ namespace {
 /// misses some, notices, and asks for a map.
 constexpr std::uint32_t kMostWaiting = 1024;
 
+/// A map takes 20 bytes a cell, and ROS drops messages of a gigabyte.
+constexpr std::size_t kMostCellsSent = 50000000;
+
 }  // namespace
 
 HeightFieldPublisher::HeightFieldPublisher(ros::NodeHandle node, const Grid& grid, const std::string& frame,
@@ -16,6 +20,12 @@ HeightFieldPublisher::HeightFieldPublisher(ros::NodeHandle node, const Grid& gri
     : difference_(grid, frame, sand, with_speed),
       follower_(grid, rate,
                 [this](const FieldsChange& change, const ros::Time& stamp) { take(change, stamp); }) {
+  if (grid.cells() > kMostCellsSent) {
+    ROS_WARN_STREAM(
+        grid.cells() << " cells are more than a message can hold; ~height_field stays silent above "
+                     << kMostCellsSent);
+    return;
+  }
   node.setCallbackQueue(&follower_.queue());
   maps_ = node.advertise<HeightField>("height_field", 1, [this](const ros::SingleSubscriberPublisher& one) {
     follower_.wake();

@@ -10,7 +10,7 @@ using CudaRequestedFields = CudaTest;
 
 TEST_F(CudaRequestedFields, AreThoseThatThereAreAndTheirChangesAreTold) {
   std::mt19937 random = seededGenerator();
-  followRandomRuns(random, 6, Backend::cuda);
+  followRandomRuns(random, 3, {70, 20}, Backend::cuda);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace {
 
 TEST(RequestedFields, AreThoseThatThereAreAndTheirChangesAreTold) {
   std::mt19937 random = seededGenerator();
-  followRandomRuns(random, 20, Backend::cpu);
+  followRandomRuns(random, 20, {150, 90}, Backend::cpu);
 }
 
 TEST(RequestedFields, OfSandAtRestDoNotChange) {
