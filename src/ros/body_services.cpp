@@ -11,6 +11,7 @@
 
 #include "shallow_sand/bodies/body_geometry.h"
 #include "shallow_sand/bodies/robot_links.h"
+#include "shallow_sand/ros/poses.h"
 
 namespace shallow_sand {
 namespace {
@@ -57,26 +58,6 @@ BodyGeometry geometryOf(const AddBody::Request& request, double sand_spacing) {
   return makeBodyGeometry(meshOf(request), sand_spacing, options);
 }
 
-/// @throws InvalidParameter if it is no pose
-Eigen::Isometry3d rigid(const geometry_msgs::Pose& pose) {
-  const Eigen::Vector3d position(pose.position.x, pose.position.y, pose.position.z);
-  const auto& q = pose.orientation;
-  Eigen::Quaterniond rotation(q.w, q.x, q.y, q.z);
-  if (rotation.coeffs().isZero(0.0)) rotation.setIdentity();
-  if (!position.allFinite()) {
-    std::ostringstream found;
-    found << position.transpose();
-    throw InvalidParameter("pose.position", found.str(), "finite numbers");
-  }
-  // As close to 1 as tf2 wants it.
-  if (!(std::abs(rotation.squaredNorm() - 1.0) < 0.01)) {
-    std::ostringstream found;
-    found << rotation.coeffs().transpose();
-    throw InvalidParameter("pose.orientation", found.str(), "a quaternion of length 1");
-  }
-  return Eigen::Translation3d(position) * rotation.normalized();
-}
-
 /// Runs a request and puts into words how it ended.
 template <class Response, class Action>
 bool answer(const std::string& request, Response& response, const Action& action) {
@@ -95,8 +76,8 @@ bool answer(const std::string& request, Response& response, const Action& action
 
 }  // namespace
 
-BodyServices::BodyServices(const std::string& sand_frame, double sand_spacing, SandBodies& bodies)
-    : sand_frame_(sand_frame), sand_spacing_(sand_spacing), bodies_(bodies) {
+BodyServices::BodyServices(double sand_spacing, SandBodies& bodies)
+    : sand_spacing_(sand_spacing), bodies_(bodies) {
   node_.setCallbackQueue(&queue_);
   add_ = node_.advertiseService("add_body", &BodyServices::add, this);
   remove_ = node_.advertiseService("remove_body", &BodyServices::remove, this);
@@ -131,10 +112,6 @@ void BodyServices::inLoop(const std::function<void()>& action) {
   done.get();
 }
 
-Eigen::Isometry3d BodyServices::poseOf(const std::string& frame) const {
-  return frame.empty() || frame == sand_frame_ ? Eigen::Isometry3d::Identity() : bodies_.poseOf(frame);
-}
-
 bool BodyServices::add(AddBody::Request& request, AddBody::Response& response) {
   return answer("~add_body " + request.name, response, [&] {
     const std::string& frame = request.pose.header.frame_id;
@@ -142,18 +119,23 @@ bool BodyServices::add(AddBody::Request& request, AddBody::Response& response) {
     if (request.follow && frame.empty()) {
       throw InvalidParameter("pose.header.frame_id", "empty", "the tf frame to follow");
     }
+    if (request.follow && request.handle) {
+      throw InvalidParameter("handle", "given beside follow",
+                             "one of the two: tf moves what follows a frame");
+    }
     inLoop([&] {
       bodies_.requireFree(request.name);
-      if (!request.follow) poseOf(frame);
+      if (!request.follow) bodies_.poseOf(frame);
     });
     const ros::WallTime begin = ros::WallTime::now();
     const BodyGeometry geometry = geometryOf(request, sand_spacing_);
     const double duration = (ros::WallTime::now() - begin).toSec();
+    const BodyAppearance appearance{lookOf(request), request.handle != 0};
     inLoop([&] {
       if (request.follow) {
-        bodies_.addFollowing(request.name, "", {frame, pose}, geometry.field);
+        bodies_.addFollowing(request.name, "", {frame, pose}, geometry.field, appearance);
       } else {
-        bodies_.addPlaced(request.name, poseOf(frame) * pose, geometry.field);
+        bodies_.addPlaced(request.name, bodies_.poseOf(frame) * pose, geometry.field, appearance);
       }
     });
     std::ostringstream done;
@@ -173,8 +155,9 @@ bool BodyServices::remove(RemoveBody::Request& request, RemoveBody::Response& re
 bool BodyServices::move(MoveBody::Request& request, MoveBody::Response& response) {
   return answer("~move_body " + request.name, response, [&] {
     const Eigen::Isometry3d pose = rigid(request.pose.pose);
-    inLoop(
-        [&] { bodies_.move(request.name, poseOf(request.pose.header.frame_id) * pose, request.duration); });
+    inLoop([&] {
+      bodies_.move(request.name, bodies_.poseOf(request.pose.header.frame_id) * pose, request.duration);
+    });
     return request.duration > 0.0 ? "under way for " + std::to_string(request.duration) + " s"
                                   : std::string("put there");
   });

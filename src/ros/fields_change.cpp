@@ -22,16 +22,19 @@ std::size_t cellsOf(const std::vector<Window>& windows) {
 
 bool isWhole(const FieldsChange& change, const Grid& grid) { return cellsOf(change.windows) == grid.cells(); }
 
-FieldsChange changeOf(const Fields& fields, std::vector<Window> windows, const Grid& grid) {
-  FieldsChange change;
+FieldsChange changeOf(const Fields& fields, std::vector<Window> windows, const Grid& grid,
+                      FieldsChange reused) {
+  FieldsChange change = std::move(reused);
   const std::size_t cells = cellsOf(windows);
   // Then a list of values is that of the map.
   if (cells == grid.cells()) windows = {Window::all(grid)};
   change.windows = std::move(windows);
+  change.values.bed.clear();
   if (cells == grid.cells()) change.values.bed = fields.bed;
   for (const Member member : kCarried) {
     const std::vector<float>& from = fields.*member;
     std::vector<float>& to = change.values.*member;
+    to.clear();
     if (from.empty()) continue;
     to.reserve(cells);
     for (const Window& window : change.windows) {

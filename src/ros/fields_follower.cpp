@@ -34,10 +34,10 @@ void FieldsFollower::note(const std::vector<Window>& changes) {
 void FieldsFollower::send(const Fields& fields, const ros::Time& stamp) {
   // Frames come when they come: what is late does not make the next one late.
   next_ = std::max(next_ + period_, ros::WallTime::now());
+  change_ = changeOf(fields, changed_.take(), grid_, std::move(change_));
   busy_ = true;
-  const auto change = boost::make_shared<const FieldsChange>(changeOf(fields, changed_.take(), grid_));
-  queue_.addCallback(boost::make_shared<Call>([this, change, stamp] {
-    take_(*change, stamp);
+  queue_.addCallback(boost::make_shared<Call>([this, stamp] {
+    take_(change_, stamp);
     busy_ = false;
   }));
 }

@@ -1,5 +1,6 @@
 #include "shallow_sand/ros/height_field_publisher.h"
 
+#include <ros/console.h>
 #include <ros/single_subscriber_publisher.h>
 #include <std_msgs/Empty.h>
 
@@ -13,6 +14,9 @@ constexpr std::uint32_t kMostWaiting = 1024;
 /// Those who ask for a map within so long get one together [s].
 constexpr double kBetweenAnswers = 0.25;
 
+/// A map takes 20 bytes a cell, and ROS drops messages of a gigabyte.
+constexpr std::size_t kMostCellsSent = 50000000;
+
 }  // namespace
 
 HeightFieldPublisher::HeightFieldPublisher(ros::NodeHandle node, const Grid& grid, const std::string& frame,
@@ -20,6 +24,12 @@ HeightFieldPublisher::HeightFieldPublisher(ros::NodeHandle node, const Grid& gri
     : difference_(grid, frame, sand, with_speed),
       follower_(grid, rate,
                 [this](const FieldsChange& change, const ros::Time& stamp) { take(change, stamp); }) {
+  if (grid.cells() > kMostCellsSent) {
+    ROS_WARN_STREAM(
+        grid.cells() << " cells are more than a message can hold; ~height_field stays silent above "
+                     << kMostCellsSent);
+    return;
+  }
   node.setCallbackQueue(&follower_.queue());
   maps_ = node.advertise<HeightField>("height_field", 1, [this](const ros::SingleSubscriberPublisher& one) {
     follower_.wake();

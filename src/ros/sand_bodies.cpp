@@ -50,6 +50,7 @@ SandBodies::SandBodies(const NodeParameters& parameters, const TransformReader& 
     for (const PoseKey& key : scene_body.motion) body.motion.append(key.time, key.pose);
     body.status.name = scene_body.name;
     body.status.state = BodyStatus::PLACED;
+    body.appearance = BodyAppearance{lookOf(scene_body), false};
     bodies_.push_back(std::move(body));
   }
 }
@@ -85,8 +86,10 @@ SandBodies::Body& SandBodies::add(const std::string& name,
 }
 
 void SandBodies::addFollowing(const std::string& name, const std::string& robot, const TfFrame& frame,
-                              std::shared_ptr<const DistanceField> field) {
+                              std::shared_ptr<const DistanceField> field,
+                              std::optional<BodyAppearance> appearance) {
   Body& body = add(name, field);
+  body.appearance = std::move(appearance);
   body.following = Following{frame, PoseTrack(body.box, max_body_speed_), {}, false, {}};
   body.status.robot = robot;
   body.status.frame = frame.name;
@@ -94,11 +97,12 @@ void SandBodies::addFollowing(const std::string& name, const std::string& robot,
 }
 
 void SandBodies::addPlaced(const std::string& name, const Eigen::Isometry3d& pose,
-                           std::shared_ptr<const DistanceField> field) {
+                           std::shared_ptr<const DistanceField> field, const BodyAppearance& appearance) {
   Motion motion;
   motion.append(simulator_.time(), pose);
   Body& body = add(name, field);
   body.motion = motion;
+  body.appearance = appearance;
   body.status.state = BodyStatus::PLACED;
   simulator_.placeBody(body.number, pose);
 }
@@ -120,10 +124,10 @@ void SandBodies::move(const std::string& name, const Eigen::Isometry3d& pose, do
   }
   const double now = simulator_.time();
   const Eigen::Isometry3d from = body.motion.poseAt(now);
-  const double distance = farthestMove(body.box, from, pose);
-  if (duration > 0.0 && !(distance <= max_body_speed_ * duration)) {
+  const double least = leastDuration(name, pose);
+  if (duration > 0.0 && !(least <= duration)) {
     std::ostringstream expected;
-    expected << "0 (it is put there), or at least " << distance / max_body_speed_ << " s for " << distance
+    expected << "0 (it is put there), or at least " << least << " s for " << least * max_body_speed_
              << " m at ~max_body_speed";
     throw InvalidParameter("duration", std::to_string(duration) + " s", expected.str());
   }
@@ -135,7 +139,13 @@ void SandBodies::move(const std::string& name, const Eigen::Isometry3d& pose, do
   if (duration > 0.0) simulator_.appendPose(body.number, now + duration, pose);
 }
 
+double SandBodies::leastDuration(const std::string& name, const Eigen::Isometry3d& pose) const {
+  const Body& body = bodies_[indexOf(name)];
+  return farthestMove(body.box, body.motion.poseAt(simulator_.time()), pose) / max_body_speed_;
+}
+
 Eigen::Isometry3d SandBodies::poseOf(const std::string& frame) const {
+  if (frame.empty() || frame == sand_frame_) return Eigen::Isometry3d::Identity();
   return lookUp(TfFrame{frame, Eigen::Isometry3d::Identity()}, ros::Time(0));
 }
 
@@ -194,6 +204,8 @@ void SandBodies::follow(Body& body, const FrameTimes& times, const ros::Time& no
 void SandBodies::apply(Body& body, const Movement& movement) {
   if (movement.placed) simulator_.placeBody(body.number, *movement.placed);
   for (const Movement::Key& key : movement.keys) simulator_.appendPose(body.number, key.time, key.pose);
+  if (movement.placed) body.following->pose = *movement.placed;
+  if (!movement.keys.empty()) body.following->pose = movement.keys.back().pose;
   if (movement.late > 0.0 && movement.late < tf_timeout_) noteLate(body, movement.late);
   if (!movement.jump) return;
   ++body.status.jumps;
@@ -246,6 +258,17 @@ std::vector<BodyStatus> SandBodies::status() const {
   std::vector<BodyStatus> all;
   for (const Body& body : bodies_) all.push_back(body.status);
   return all;
+}
+
+std::vector<ShownBody> SandBodies::shown() const {
+  std::vector<ShownBody> shown;
+  for (const Body& body : bodies_) {
+    if (!body.appearance || (body.following && !body.following->in_sand)) continue;
+    const Eigen::Isometry3d pose =
+        body.following ? body.following->pose : body.motion.poseAt(simulator_.time());
+    shown.push_back({body.status.name, pose, *body.appearance, body.box.sizes().maxCoeff()});
+  }
+  return shown;
 }
 
 }  // namespace shallow_sand

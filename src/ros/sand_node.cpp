@@ -34,7 +34,10 @@ SandNode::SandNode()
     : parameters_(readNodeParameters(private_node_)),
       simulator_(build(parameters_.scene)),
       bodies_(parameters_, transforms_, simulator_),
-      services_(parameters_.scene.parameters.grid.frame, simulator_.grid().spacing, bodies_),
+      services_(simulator_.grid().spacing, bodies_),
+      pour_(private_node_, bodies_, simulator_),
+      body_markers_(private_node_, parameters_.scene.parameters.grid.frame),
+      body_handles_(parameters_.scene.parameters.grid.frame, 1.0 / parameters_.frame_rate, bodies_),
       height_field_(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
                     constantsOf(simulator_), parameters_.height_field_rate, parameters_.publish_speed),
       surface_(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
@@ -82,6 +85,7 @@ void SandNode::update(const ros::Time& time) {
   simulator_.time();  // waits for the GPU
   busy_ += (ros::WallTime::now() - begin).toSec();
   if (last_status_.isZero() || time - last_status_ >= ros::Duration(1.0)) publishStatus(time);
+  showBodies();
   requestFields(time);
   // The CPU has computed all before it returned: fields need not wait for a frame.
   if (simulator_.backend() == Backend::cpu) handOverFields();
@@ -97,6 +101,15 @@ void SandNode::beginAdvance(const ros::Time& time) {
   const ros::WallTime begin = ros::WallTime::now();
   simulator_.beginAdvanceTo(end);
   busy_ += (ros::WallTime::now() - begin).toSec();
+}
+
+void SandNode::showBodies() {
+  const ros::WallTime now = ros::WallTime::now();
+  if ((now - last_bodies_).toSec() < 1.0 / parameters_.publish_rate) return;
+  last_bodies_ = now;
+  const std::vector<ShownBody> shown = bodies_.shown();
+  body_markers_.update(shown);
+  body_handles_.update(shown);
 }
 
 void SandNode::requestFields(const ros::Time& time) {

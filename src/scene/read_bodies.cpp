@@ -34,6 +34,8 @@ void readMeshInto(SceneBody& body, const SceneValue& value) {
   value.read("scale", kScale, scale);
   const std::string uri = uriFrom(value.at("mesh"));
   value.check([&] { body.shape = readMesh(uri, scale); });
+  body.mesh_uri = uri;
+  body.mesh_scale = scale;
   if (const auto as = value.find("as")) {
     value.check([&] { body.stands_for = linkShapeFromString(as->text(), "as"); });
   }

@@ -22,7 +22,7 @@ namespace shallow_sand {
 class BodyServices {
  public:
   /// @param bodies must outlive this; used in `runPending` only
-  BodyServices(const std::string& sand_frame, double sand_spacing, SandBodies& bodies);
+  BodyServices(double sand_spacing, SandBodies& bodies);
   /// To be called by the node's loop: does what requests have handed over.
   void runPending();
 
@@ -32,10 +32,7 @@ class BodyServices {
   bool move(MoveBody::Request& request, MoveBody::Response& response);
   /// Has the node's loop do something, and waits until it has. @throws what `action` throws
   void inLoop(const std::function<void()>& action);
-  /// Of a frame in the sand's; the identity if it has no name. @throws tf2::TransformException
-  Eigen::Isometry3d poseOf(const std::string& frame) const;
 
-  std::string sand_frame_;
   double sand_spacing_;
   SandBodies& bodies_;
   std::mutex mutex_;

@@ -16,7 +16,9 @@ struct FieldsChange {
 };
 
 /// @param windows that do not overlap
-FieldsChange changeOf(const Fields& fields, std::vector<Window> windows, const Grid& grid);
+/// @param reused a change that nobody needs any more: memory that is new is dear
+FieldsChange changeOf(const Fields& fields, std::vector<Window> windows, const Grid& grid,
+                      FieldsChange reused = {});
 
 /// The change holds every cell of the map.
 bool isWhole(const FieldsChange& change, const Grid& grid);

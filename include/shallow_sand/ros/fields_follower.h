@@ -44,6 +44,7 @@ class FieldsFollower {
   Take take_;
   TileSet changed_;
   ros::WallTime next_;
+  FieldsChange change_;  ///< the follower's as long as it is busy, else the sand's
   std::atomic<bool> awake_{false};
   std::atomic<bool> busy_{false};
   ros::CallbackQueue queue_;

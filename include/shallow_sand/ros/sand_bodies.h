@@ -11,6 +11,7 @@
 #include "shallow_sand/bodies/distance_field.h"
 #include "shallow_sand/bodies/motion.h"
 #include "shallow_sand/bodies/pose_track.h"
+#include "shallow_sand/ros/body_look.h"
 #include "shallow_sand/ros/body_news.h"
 #include "shallow_sand/ros/node_parameters.h"
 #include "shallow_sand/ros/transform_reader.h"
@@ -22,6 +23,20 @@ namespace shallow_sand {
 struct TfFrame {
   std::string name;
   Eigen::Isometry3d offset = Eigen::Isometry3d::Identity();  ///< of the body in that frame
+};
+
+/// What is shown of a body.
+struct BodyAppearance {
+  visualization_msgs::Marker look;  ///< see lookOf
+  bool handle = false;              ///< offers itself to be dragged
+};
+
+/// A body that is shown, where it is.
+struct ShownBody {
+  std::string name;
+  Eigen::Isometry3d pose;  ///< in the sand's frame, at the time of the sand
+  BodyAppearance appearance;
+  double size;  ///< of its box's longest side [m]
 };
 
 /// All bodies of a simulator by name: those of the scene, robots' links, and those that services add. Takes
@@ -38,16 +53,19 @@ class SandBodies {
   void requireFree(const std::string& name) const;
   /// Adds a body that follows tf. @param robot whose link it is; empty: none
   void addFollowing(const std::string& name, const std::string& robot, const TfFrame& frame,
-                    std::shared_ptr<const DistanceField> field);
+                    std::shared_ptr<const DistanceField> field,
+                    std::optional<BodyAppearance> appearance = {});
   /// Adds a body that rests at a pose in the sand's frame.
   void addPlaced(const std::string& name, const Eigen::Isometry3d& pose,
-                 std::shared_ptr<const DistanceField> field);
+                 std::shared_ptr<const DistanceField> field, const BodyAppearance& appearance);
   /// @throws InvalidParameter if there is no such body
   void remove(const std::string& name);
   /// Moves a body that follows no tf frame to a pose in the sand's frame within a duration [s, simulated];
   /// 0: puts it there. @throws InvalidParameter if there is no such body, it follows tf, or would be too fast
   void move(const std::string& name, const Eigen::Isometry3d& pose, double duration);
-  /// Where tf has a frame now, in the sand's. @throws tf2::TransformException
+  /// How long a body takes at least to get to a pose [s]. @throws InvalidParameter if there is no such body
+  double leastDuration(const std::string& name, const Eigen::Isometry3d& pose) const;
+  /// Where tf has a frame now, in the sand's; the identity if it has no name. @throws tf2::TransformException
   Eigen::Isometry3d poseOf(const std::string& frame) const;
 
   /// Tells the simulator where bodies go in the frame that ends at ROS time `end` and simulated time
@@ -57,6 +75,8 @@ class SandBodies {
   void restartClock();
 
   std::vector<BodyStatus> status() const;
+  /// Those of the scene and those that services have added, as soon as they have a pose; not robots' links.
+  std::vector<ShownBody> shown() const;
 
  private:
   struct Following {
@@ -65,6 +85,7 @@ class SandBodies {
     ros::Time failing;        ///< since when its pose cannot be had; zero: it can
     bool in_sand = false;     ///< it has had a pose
     ros::WallTime told_jump;  ///< when the log last told of a jump
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< that it had last, if it is in the sand
   };
   struct Body {
     std::size_t number;  ///< of the simulator
@@ -72,6 +93,7 @@ class SandBodies {
     std::optional<Following> following;
     Motion motion;  ///< of a body that follows no frame; simulated time
     BodyStatus status;
+    std::optional<BodyAppearance> appearance;  ///< none: it is not shown
   };
   Body& add(const std::string& name, const std::shared_ptr<const DistanceField>& field);
   std::size_t indexOf(const std::string& name) const;

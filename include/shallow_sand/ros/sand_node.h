@@ -5,9 +5,12 @@
 #include <optional>
 #include <vector>
 
+#include "shallow_sand/ros/body_handles.h"
+#include "shallow_sand/ros/body_markers.h"
 #include "shallow_sand/ros/body_services.h"
 #include "shallow_sand/ros/height_field_publisher.h"
 #include "shallow_sand/ros/node_parameters.h"
+#include "shallow_sand/ros/pour_topic.h"
 #include "shallow_sand/ros/robot.h"
 #include "shallow_sand/ros/sand_bodies.h"
 #include "shallow_sand/ros/surface_publisher.h"
@@ -27,7 +30,9 @@ namespace shallow_sand {
 /// - serves ~add_body, ~move_body and ~remove_body; meshes are read and sampled beside the sand;
 /// - publishes ~points, ~mesh (latched, at ~publish_rate), ~height_field and its updates, each beside the
 /// sand: the sand hands over what has changed, on the GPU while the next frame runs, and waits for nobody;
-/// - publishes ~status (latched, once a second);
+/// - publishes ~status (latched, once a second) and ~bodies (latched, when one has moved, at most at
+/// ~publish_rate);
+/// - takes sand from and for ~pour, and lets bodies be dragged by interactive markers under ~body_handles;
 /// - at the end writes ~report, ~picture and ~mesh_file.
 class SandNode {
  public:
@@ -47,6 +52,7 @@ class SandNode {
   void requestFields(const ros::Time& time);
   /// Gives those that were requested to those who wait for them.
   void handOverFields();
+  void showBodies();
   void publishStatus(const ros::Time& time);
   void writeResults() const;
 
@@ -58,6 +64,9 @@ class SandNode {
   SandBodies bodies_;
   std::vector<Robot> robots_;
   BodyServices services_;
+  PourTopic pour_;
+  BodyMarkers body_markers_;
+  BodyHandles body_handles_;
   HeightFieldPublisher height_field_;
   SurfacePublisher surface_;
   ros::Publisher status_;
@@ -66,6 +75,7 @@ class SandNode {
   ros::Time last_frame_;
   ros::Time last_status_;
   ros::WallTime last_status_wall_;
+  ros::WallTime last_bodies_;  ///< when they were shown
   double last_status_simulated_ = 0.0;
   double busy_ = 0.0;  ///< time spent in the simulator [s]
 };

@@ -34,7 +34,9 @@ struct SceneBody {
   std::string name;                         ///< unlike that of any other body
   Shape shape;                              ///< in the body's frame
   LinkShape stands_for = LinkShape::exact;  ///< what of a mesh goes into the sand
-  std::vector<PoseKey> motion;              ///< at least one; times increase
+  std::string mesh_uri;                     ///< where the mesh came from; empty for other shapes
+  Eigen::Vector3d mesh_scale = Eigen::Vector3d::Ones();
+  std::vector<PoseKey> motion;  ///< at least one; times increase
 };
 
 /// Everything that a scene file says.

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <interactive_markers/interactive_marker_server.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "shallow_sand/ros/sand_bodies.h"
+
+namespace shallow_sand {
+
+/// Interactive markers by which bodies are dragged: under ~body_handles, one for each body that was added
+/// with a handle. A body follows its marker within the time between two of the marker's messages, so that it
+/// pushes sand at the speed of the hand, or at ~max_body_speed if the hand is faster.
+class BodyHandles {
+ public:
+  /// Messages are taken from the global queue. @param bodies must outlive this
+  /// @param frame_period of the sand [s]
+  BodyHandles(const std::string& sand_frame, double frame_period, SandBodies& bodies);
+  /// Brings markers to the bodies, save those that are being dragged.
+  void update(const std::vector<ShownBody>& shown);
+
+ private:
+  struct Handle {
+    Eigen::Isometry3d pose;  ///< as it was told last
+    ros::Time dragged;       ///< when the last message came
+    bool refused = false;    ///< that message: the marker has to go back
+  };
+  void insert(const ShownBody& body);
+  void take(const visualization_msgs::InteractiveMarkerFeedback& feedback);
+  void drag(const visualization_msgs::InteractiveMarkerFeedback& feedback, Handle& handle);
+
+  std::string sand_frame_;
+  double frame_period_;
+  SandBodies& bodies_;
+  interactive_markers::InteractiveMarkerServer server_;
+  std::map<std::string, Handle> handles_;
+};
+
+}  // namespace shallow_sand
