@@ -4,6 +4,7 @@
 // end it prints how late updates came [s].
 #include <ros/ros.h>
 #include <ros/single_subscriber_publisher.h>
+#include <std_msgs/Empty.h>
 
 #include <algorithm>
 #include <iostream>
@@ -19,8 +20,14 @@ namespace {
 /// Passes a height field on, with losses.
 class LossyRelay {
  public:
-  LossyRelay(const std::string& from, const std::string& to, int lose) : from_(from), lose_(lose) {
-    maps_out_ = node_.advertise<HeightField>(to, 1, [this](const ros::SingleSubscriberPublisher&) { ask(); });
+  LossyRelay(const std::string& from, const std::string& to, int lose) : lose_(lose) {
+    maps_out_ = node_.advertise<HeightField>(to, 1);
+    requests_out_ = node_.advertise<std_msgs::Empty>(from + "_requests", 1);
+    maps_ = node_.subscribe<HeightField>(
+        from, 1, [this](const HeightField::ConstPtr& map) { maps_out_.publish(map); });
+    requests_ = node_.subscribe<std_msgs::Empty>(
+        to + "_requests", 1,
+        [this](const std_msgs::EmptyConstPtr& request) { requests_out_.publish(request); });
     updates_out_ = node_.advertise<HeightFieldUpdate>(to + "_updates", 4096);
     updates_ = node_.subscribe<HeightFieldUpdate>(
         from + "_updates", 4096, [this](const HeightFieldUpdate::ConstPtr& update) { take(update); });
@@ -28,11 +35,6 @@ class LossyRelay {
   }
 
  private:
-  void ask() {
-    maps_.shutdown();
-    maps_ = node_.subscribe<HeightField>(
-        from_, 1, [this](const HeightField::ConstPtr& map) { maps_out_.publish(map); });
-  }
   void take(const HeightFieldUpdate::ConstPtr& update) {
     if (held_ && ++count_ % lose_ != 0) updates_out_.publish(held_);
     held_ = update;
@@ -45,15 +47,16 @@ class LossyRelay {
   }
 
   ros::NodeHandle node_;
-  std::string from_;
   int lose_;
   int count_ = 0;
   HeightFieldUpdate::ConstPtr held_;
   ros::WallTime held_since_;
   ros::Publisher maps_out_;
   ros::Publisher updates_out_;
+  ros::Publisher requests_out_;
   ros::Subscriber maps_;
   ros::Subscriber updates_;
+  ros::Subscriber requests_;
   ros::WallTimer timer_;
 };
 
