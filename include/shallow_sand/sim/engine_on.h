@@ -11,6 +11,7 @@
 #include "shallow_sand/coupling/flow_loads.h"
 #include "shallow_sand/coupling/meet_bodies.h"
 #include "shallow_sand/coupling/pushed_sand.h"
+#include "shallow_sand/particles/grains_on_host.h"
 #include "shallow_sand/sim/sand_memory.h"
 
 namespace shallow_sand {
@@ -32,7 +33,8 @@ class EngineOn : public SteppedEngine {
         stepper_(executor_, stepper...),
         grid_(start.grid),
         displacement_(start.displacement),
-        memory_(start) {}
+        memory_(start),
+        grains_(grainMemoryOf<Executor::template Memory>(start)) {}
 
   void addBody(const DistanceField& field) override { memory_.addBody(field); }
   void removeBody(std::size_t body) override { memory_.removeBody(body); }
@@ -128,6 +130,17 @@ class EngineOn : public SteppedEngine {
     const std::vector<float> depths = memory_.downloaded(overlap);
     return std::accumulate(depths.begin(), depths.end(), 0.0) * grid_.cellArea();
   }
+
+  void moveGrains(float duration, std::uint32_t number) override {
+    std::vector<Window> awake = stepper_.due();
+    // Loads may move where no tile is due.
+    awake.insert(awake.end(), windows_.begin(), windows_.end());
+    if (!awake.empty()) {
+      ::shallow_sand::moveGrains(executor_, grains_->move(memory_.visibleSand(), duration, number), awake);
+    }
+  }
+  std::vector<Grain> grains() override { return grains_->get(); }
+  void setGrains(const std::vector<Grain>& grains) override { grains_->set(grains); }
 
   ContactSnapshot contacts() const override { return memory_.snapshot(windows_); }
 
@@ -397,6 +410,7 @@ class EngineOn : public SteppedEngine {
   Grid grid_;
   bool displacement_;
   Sand memory_;
+  std::optional<GrainMemory<Executor::template Memory>> grains_;
   StepArguments attempted_{};
   StepRun run_{};
   Fields requested_;
