@@ -43,8 +43,6 @@ class GrainMemory {
     return {flow,           u_.data(), v_.data(), grains_.data(), next_.data(),
             claims_.data(), list(0),   list(1),   number};
   }
-  /// Of the two lists of a move.
-  Memory<int>& lengths() { return lengths_; }
 
  private:
   GrainGrid grid_;
