@@ -63,6 +63,10 @@ void resting(benchmark::State& state) {
   measureResting(state, restingSand(4096, 2, state.range(0) != 0 ? Edge::open : Edge::wall));
 }
 
+void restingGrains(benchmark::State& state) {
+  measureRestingGrains(state, restingSand(static_cast<int>(state.range(0)), 2, Edge::wall));
+}
+
 /// Two threads by turns with one, beside other processes that are busy on every core.
 void besideBusyProcesses(benchmark::State& state) {
   const int side = static_cast<int>(state.range(0));
@@ -94,6 +98,11 @@ void registerCpuBenchmarks() {
       ->ArgNames({"open_edges"})
       ->Arg(0)
       ->Arg(1)
+      ->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("resting_grains", restingGrains)
+      ->ArgNames({"side"})
+      ->Arg(64)
+      ->Arg(1024)
       ->Unit(benchmark::kMicrosecond);
   add("beside_busy_processes", besideBusyProcesses)
       ->ArgNames({"side", "others"})

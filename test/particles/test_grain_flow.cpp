@@ -297,8 +297,8 @@ TEST(GrainFlow, OfTheDiluteLayerIsThatOfTheSand) {
     parameters.layers = 10 * parameters.per_cell;  // down to the bed
     const int moving = randomCount(random, 1, parameters.layers);
     Material material;
-    // Between two layers of grains, but for a rounding.
-    material.layer_depth = 0.1 / parameters.per_cell * moving * (1.0 + 1e-6);
+    // Between two layers of grains, of which roundings may let one beside it go, or rest.
+    material.layer_depth = 0.1 / parameters.per_cell * moving;
     parameters.speed = GrainSpeed::dilute;
     GivenFlow flow(6, 5, parameters, material);
     const Eigen::Vector2d velocity(uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0));
@@ -310,18 +310,25 @@ TEST(GrainFlow, OfTheDiluteLayerIsThatOfTheSand) {
       for (int i = 0; i < 6; ++i) move.findFlow(i, j);
     }
     Eigen::Vector2d ways = Eigen::Vector2d::Zero();
+    int in_doubt = 0;
     for (int d = 0; d < grains.grid.layers; ++d) {
       for (int t = 0; t < grains.grid.rows; ++t) {
         for (int s = 0; s < grains.grid.columns; ++s) {
-          const Momentum way = move.flow.wayOf(grains.cells[grains.grid.index(s, t, d)], s, t, d);
-          EXPECT_EQ(way.x != 0.0f, d < moving);
+          const Grain& grain = grains.cells[grains.grid.index(s, t, d)];
+          const Momentum way = move.flow.wayOf(grain, s, t, d);
+          const double depth = static_cast<double>(depthOf(grain, d, grains.grid.spacing));
+          const bool doubtful = std::abs(depth - material.layer_depth) < 1e-6 * material.layer_depth;
+          in_doubt += doubtful ? 1 : 0;
+          EXPECT_TRUE(doubtful || (way.x != 0.0f) == (d < moving));
           ways += Eigen::Vector2d(way.x, way.y);
         }
       }
     }
+    const double moving_grains = moving * 30.0 * parameters.per_cell * parameters.per_cell;
     // Depth 1 m: hu is u.
     const Eigen::Vector2d flux = std::pow(flow.spacing(), 4) * ways / (duration * 6 * 5 * 0.01);
-    EXPECT_LT((flux - velocity).norm(), 1e-4 * velocity.norm()) << parameters.per_cell << ", " << moving;
+    EXPECT_LT((flux - velocity).norm(), (1e-4 + in_doubt / moving_grains) * velocity.norm())
+        << parameters.per_cell << ", " << moving;
   }
 }
 
