@@ -34,18 +34,18 @@ void moveGrains(const HostExecutor& executor, const GrainMove& move, const std::
   executor.forEachTask(*move.moving.length, [&](int k, int) {
     const Window cells = tile(move.moving, k);
     move.reached.add(cells.column_begin, cells.row_begin);
-    move.moving.remove(k);
     forEachGrain(grains, cells, [&](int s, int t, int d) { move.claim(s, t, d); });
   });
   const int reached = *move.reached.length;
   executor.forEachTask(reached, [&](int k, int) {
-    forEachGrain(grains, tile(move.reached, k), [&](int s, int t, int d) { move.settle(s, t, d); });
+    const bool moves = move.moving.holds(move.reached.tiles[k]);
+    forEachGrain(grains, tile(move.reached, k), [&](int s, int t, int d) { move.settle(s, t, d, moves); });
   });
   executor.forEachTask(reached, [&](int k, int) {
     const Window cells = tile(move.reached, k);
     forEachGrain(grains, cells, [&](int s, int t, int d) { move.finish(s, t, d); });
     forEachCell(cells, [&](int i, int j) { move.clearFlow(i, j); });
-    move.reached.remove(k);
+    for (const TileList* list : {&move.moving, &move.reached}) list->remove(move.reached.tiles[k]);
   });
 }
 

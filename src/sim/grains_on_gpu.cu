@@ -52,10 +52,7 @@ __global__ void __launch_bounds__(kBlockThreads, 1)
   const int tiles = *move.moving.length;
   for (int k = static_cast<int>(blockIdx.x); k < tiles; k += static_cast<int>(gridDim.x)) {
     const Window cells = cellsOf(move.moving, k, move);
-    if (isFirst()) {
-      move.reached.add(cells.column_begin, cells.row_begin);
-      move.moving.remove(k);
-    }
+    if (isFirst()) move.reached.add(cells.column_begin, cells.row_begin);
     forEachGrain(move.flow.grains, cells, [&](int s, int t, int d) { move.claim(s, t, d); });
   }
 }
@@ -64,8 +61,9 @@ __global__ void __launch_bounds__(kBlockThreads, 1)
     settleGrains(SHALLOW_SAND_GRID_CONSTANT const GrainMove move) {
   const int tiles = *move.reached.length;
   for (int k = static_cast<int>(blockIdx.x); k < tiles; k += static_cast<int>(gridDim.x)) {
+    const bool moves = move.moving.holds(move.reached.tiles[k]);
     forEachGrain(move.flow.grains, cellsOf(move.reached, k, move),
-                 [&](int s, int t, int d) { move.settle(s, t, d); });
+                 [&](int s, int t, int d) { move.settle(s, t, d, moves); });
   }
 }
 
@@ -76,7 +74,9 @@ __global__ void __launch_bounds__(kBlockThreads, 1)
     const Window cells = cellsOf(move.reached, k, move);
     forEachGrain(move.flow.grains, cells, [&](int s, int t, int d) { move.finish(s, t, d); });
     forEachCell(cells, [&](int i, int j) { move.clearFlow(i, j); });
-    if (isFirst()) move.reached.remove(k);
+    if (!isFirst()) continue;
+    move.moving.remove(move.reached.tiles[k]);
+    move.reached.remove(move.reached.tiles[k]);
   }
 }
 

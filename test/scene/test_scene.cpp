@@ -233,7 +233,7 @@ TEST(Scene, FilesThatAreNoScenesAreRefused) {
 }
 
 TEST(Scene, ExamplesLoad) {
-  for (const std::string name : {"blade", "pile", "cone_at_rest", "terrain"}) {
+  for (const std::string name : {"blade", "pile", "cone_at_rest", "terrain", "mixing"}) {
     const Scene scene = loadScene(SHALLOW_SAND_SOURCE_DIR "/config/scenes/" + name + ".yaml");
     EXPECT_EQ(scene.name, name);
   }

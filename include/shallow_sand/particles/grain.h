@@ -31,7 +31,8 @@ struct GrainGrid {
   int layers = 0;
   int columns = 0;  ///< of J
   int rows = 0;
-  float spacing = 0.0f;  ///< Δl [m]
+  std::uint64_t reciprocal = 0;  ///< 2^32 over per_cell, rounded up
+  float spacing = 0.0f;          ///< Δl [m]
 
   GrainGrid() = default;
   GrainGrid(const GrainParameters& parameters, const Grid& grid)
@@ -39,11 +40,17 @@ struct GrainGrid {
         layers(parameters.layers),
         columns(grid.columns * parameters.per_cell),
         rows(grid.rows * parameters.per_cell),
+        reciprocal(((1ull << 32) + static_cast<unsigned>(parameters.per_cell) - 1) /
+                   static_cast<unsigned>(parameters.per_cell)),
         spacing(grid.spacing / static_cast<float>(parameters.per_cell)) {}
 
   SHALLOW_SAND_HOST_DEVICE long long cells() const { return static_cast<long long>(columns) * rows * layers; }
   SHALLOW_SAND_HOST_DEVICE long long index(int s, int t, int d) const {
     return (static_cast<long long>(d) * rows + t) * columns + s;
+  }
+  /// Column of I that holds a column of J, or row that holds a row: a division, exact up to 2^26.
+  SHALLOW_SAND_HOST_DEVICE int cellOfSand(int cell) const {
+    return static_cast<int>(static_cast<std::uint64_t>(cell) * reciprocal >> 32);
   }
 };
 

@@ -50,6 +50,7 @@ struct GrainFlow {
   const float* v;
   GrainSpeed speed;
   float cells_per_speed;  ///< Δt/Δl [s/m]
+  float cells_of_sand;    ///< Δl/ΔL
 
   /// No grain goes farther in a move, along either axis; nobody who looks more than a few times a second sees
   /// one that would. [cells of I]
@@ -79,14 +80,11 @@ struct GrainFlow {
   };
 
   SHALLOW_SAND_HOST_DEVICE Weights weightsAt(int s, int t, float x, float y) const {
-    const Between i = between(s, x, grains.per_cell, sand.step.columns);
-    const Between j = between(t, y, grains.per_cell, sand.step.rows);
-    return {sand.step.index(i.below, j.below),
-            sand.step.index(i.above, j.below),
-            sand.step.index(i.below, j.above),
-            sand.step.index(i.above, j.above),
-            i.share,
-            j.share};
+    const Between i = between(s, x, sand.step.columns);
+    const Between j = between(t, y, sand.step.rows);
+    const long long south = sand.step.index(0, j.below);
+    const long long north = sand.step.index(0, j.above);
+    return {south + i.below, south + i.above, north + i.below, north + i.above, i.share, j.share};
   }
 
   /// By how many cells of J a grain moves (Eq. 31).
@@ -129,13 +127,13 @@ struct GrainFlow {
     int above;
     float share;  ///< of the one above
   };
-  SHALLOW_SAND_HOST_DEVICE static Between between(int cell, float offset, int per_cell, int count) {
-    const int own = cell / per_cell;
-    const float along =
-        (static_cast<float>(cell - own * per_cell) + offset) / static_cast<float>(per_cell) - 0.5f;
-    const int below = along < 0.0f ? own - 1 : own;
+  SHALLOW_SAND_HOST_DEVICE Between between(int cell, float offset, int count) const {
+    const int own = grains.cellOfSand(cell);
+    const float along = (static_cast<float>(cell - own * grains.per_cell) + offset) * cells_of_sand - 0.5f;
+    const int before = along < 0.0f ? 1 : 0;
+    const int below = own - before;
     return {below < 0 ? 0 : below, below + 1 < count ? below + 1 : count - 1,
-            along < 0.0f ? along + 1.0f : along};
+            along + static_cast<float>(before)};
   }
 
   SHALLOW_SAND_HOST_DEVICE Momentum velocityAt(const Weights& weights) const {
@@ -151,10 +149,11 @@ struct GrainFlow {
   /// edge.
   SHALLOW_SAND_HOST_DEVICE static bool settle(int& cell, float& offset, int count, bool open_below,
                                               bool open_above) {
-    const float whole = floorf(offset);
+    const int towards_zero = static_cast<int>(offset);
+    const int whole = towards_zero - (offset < static_cast<float>(towards_zero) ? 1 : 0);
     // A tiny step back would round to 1.
-    offset = minimum(offset - whole, kBelowOne);
-    cell += static_cast<int>(whole);
+    offset = minimum(offset - static_cast<float>(whole), kBelowOne);
+    cell += whole;
     if (cell < 0) {
       cell = 0;
       offset = 0.0f;

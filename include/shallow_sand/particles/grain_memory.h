@@ -39,7 +39,13 @@ class GrainMemory {
     const auto list = [&](std::size_t k) {
       return TileList{across_, listed_.data() + k * tiles_, lists_.data() + k * tiles_, lengths_.data() + k};
     };
-    const GrainFlow flow{grid_, sand, u_.data(), v_.data(), speed_, duration / grid_.spacing};
+    const GrainFlow flow{grid_,
+                         sand,
+                         u_.data(),
+                         v_.data(),
+                         speed_,
+                         duration / grid_.spacing,
+                         1.0f / static_cast<float>(grid_.per_cell)};
     return {flow,           u_.data(), v_.data(), grains_.data(), next_.data(),
             claims_.data(), list(0),   list(1),   number};
   }

@@ -29,7 +29,8 @@ struct TileList {
     const int j = tiles[k] / across * kBlockRows;
     return Window{i, j, i + kBlockColumns, j + kBlockRows}.overlap({0, 0, columns, rows});
   }
-  SHALLOW_SAND_HOST_DEVICE void remove(int k) const { listed[tiles[k]] = 0; }
+  SHALLOW_SAND_HOST_DEVICE bool holds(int tile) const { return listed[tile] != 0; }
+  SHALLOW_SAND_HOST_DEVICE void remove(int tile) const { listed[tile] = 0; }
 };
 
 /// What a grain that comes to a cell tells: the largest claim of a cell wins it. 0 is none.
@@ -57,7 +58,7 @@ SHALLOW_SAND_HOST_DEVICE inline std::uint32_t claimantOf(Claim claim) {
 
 /// A move of all grains (section 6.2), in four passes, each over cells in any order:
 /// - findFlow, of each cell of I that may move: its velocity, and the tiles in which grains move
-/// - claim, of each cell of J in those tiles: its grain claims the cell that it comes to
+/// - claim, of each cell of J in those tiles: its grain goes on within the cell, or claims another one
 /// - settle, of each cell of J in the tiles of these and of what was claimed: who wins it
 /// - finish, of the same tiles: the winners take their places, and all is as it was before the move
 struct GrainMove {
@@ -88,28 +89,30 @@ struct GrainMove {
 
   SHALLOW_SAND_HOST_DEVICE void claim(int s, int t, int d) const {
     const long long cell = flow.grains.index(s, t, d);
-    const GrainPlace place = flow.placeOf(grains[cell], s, t, d);
-    if (place.left || (place.s == s && place.t == t)) return;
+    const Grain own = grains[cell];
+    const GrainPlace place = flow.placeOf(own, s, t, d);
+    const bool stays = !place.left && place.s == s && place.t == t;
+    next[cell] = {stays ? place.x : kNoGrain, place.y, own.origin, own.born};
+    if (stays || place.left) return;
     atomicRaise(&claims[flow.grains.index(place.s, place.t, d)],
-                claimOf(grains[cell], static_cast<std::uint32_t>(cell)));
-    reached.add(place.s / flow.grains.per_cell, place.t / flow.grains.per_cell);
+                claimOf(own, static_cast<std::uint32_t>(cell)));
+    reached.add(flow.grains.cellOfSand(place.s), flow.grains.cellOfSand(place.t));
   }
 
-  SHALLOW_SAND_HOST_DEVICE void settle(int s, int t, int d) const {
+  /// @param moves whether the grain of the cell had part in claim()
+  SHALLOW_SAND_HOST_DEVICE void settle(int s, int t, int d, bool moves) const {
     const long long cell = flow.grains.index(s, t, d);
-    const std::uint32_t number_of_cell = static_cast<std::uint32_t>(cell);
-    const Grain own = grains[cell];
-    GrainPlace place = flow.placeOf(own, s, t, d);
-    const bool stays = !place.left && place.s == s && place.t == t;
+    const Grain own = moves ? next[cell] : grains[cell];
+    const bool stays = own.x != kNoGrain;
     const Claim came = claims[cell];
-    if (stays && claimOf(own, number_of_cell) >= came) {
-      next[cell] = {place.x, place.y, own.origin, own.born};
-    } else if (came != 0) {
+    if (came != 0 && !(stays && claimOf(own, static_cast<std::uint32_t>(cell)) > came)) {
       next[cell] = settled(claimantOf(came), d);
-    } else {
-      Grain grain = generatedGrain(number_of_cell, number, 0);
+    } else if (!stays) {
+      Grain grain = generatedGrain(static_cast<std::uint32_t>(cell), number, 0);
       grain.origin = grains[flow.upstreamOf(grain, s, t, d)].origin;
       next[cell] = grain;
+    } else if (!moves) {
+      next[cell] = own;
     }
   }
 
@@ -125,6 +128,8 @@ struct GrainMove {
   }
 
  private:
+  static constexpr float kNoGrain = -1.0f;  // as an offset: the grain has left the cell
+
   /// The grain of another cell where it comes to.
   SHALLOW_SAND_HOST_DEVICE Grain settled(std::uint32_t from, int d) const {
     const std::uint32_t columns = static_cast<std::uint32_t>(flow.grains.columns);
