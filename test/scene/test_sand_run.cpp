@@ -127,7 +127,7 @@ TEST(SandRun, WritesWhatItPromises) {
 }
 
 TEST(SandRun, TellsHowManyGrainsThereAre) {
-  const std::string scene = sceneFile(kSmallScene + "\ngrains: {per_cell: 3, layers: 2}\n");
+  const std::string scene = sceneFile(std::string(kSmallScene) + "grains: {per_cell: 3, layers: 2}\n");
   const Outcome outcome = sandRun(scene + " --backend cpu --report grains.json --picture grains.png");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_EQ(nlohmann::json::parse(contentsOf("grains.json")).at("grains"), 40 * 25 * 18);
