@@ -157,6 +157,97 @@ TEST(GrainFlow, ByWholeCellsLosesNoGrainThatStaysInside) {
   }
 }
 
+/// However little it is, and from the very ends of a cell.
+TEST(GrainFlow, BringsGrainsToPlacesInACell) {
+  std::mt19937 random = seededGenerator();
+  GivenFlow flow(20, 20, grainsOf(3, 1));
+  for (int number = 0; number < 200; ++number) {
+    const double size = std::pow(10.0, uniform(random, -12.0, 0.0));
+    const double heading = uniform(random, 0.0, 2.0 * M_PI);
+    flow.set([&](double, double) -> Eigen::Vector2d {
+      return size * Eigen::Vector2d(std::cos(heading), std::sin(heading));
+    });
+    const GrainMove move = flow.move(flow.spacing());
+    for (int j = 0; j < 20; ++j) {
+      for (int i = 0; i < 20; ++i) move.findFlow(i, j);
+    }
+    for (const float x : {0.0f, 1e-9f, static_cast<float>(uniform(random, 0.1, 0.9)), kBelowOne}) {
+      const GrainPlace place =
+          move.flow.placeOf({x, 1.0f - x > kBelowOne ? kBelowOne : 1.0f - x, 0, 0}, 30, 30, 0);
+      ASSERT_TRUE(place.x >= 0.0f && place.x < 1.0f && place.y >= 0.0f && place.y < 1.0f) << place.x;
+      ASSERT_NEAR(place.s + static_cast<double>(place.x),
+                  30.0 + static_cast<double>(x) + size * std::cos(heading), 1e-5);
+    }
+  }
+}
+
+/// Here and there a cell of the map moves; every grain to which Eq. 27 gives a velocity goes on, however far
+/// it is from a tile in which something moves.
+TEST(GrainFlow, MovesAllGrainsAroundACellThatMoves) {
+  std::mt19937 random = seededGenerator();
+  for (int number = 0; number < 20; ++number) {
+    GivenFlow flow(80, 20, grainsOf(4, 1));
+    std::vector<Eigen::Vector2d> velocities(80 * 20, Eigen::Vector2d::Zero());
+    for (int k = 0; k < 8; ++k) {
+      // Often in the corner of a tile.
+      const int i = random() % 2 == 0 ? 32 * randomCount(random, 0, 2) : 32 * randomCount(random, 1, 2) - 1;
+      const int j = random() % 2 == 0 ? 4 * randomCount(random, 0, 4) : randomCount(random, 0, 19);
+      velocities[j * 80 + i] = {uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0)};
+    }
+    const auto cell = [](double place) { return static_cast<int>(place / 0.1); };
+    flow.set([&](double x, double y) { return velocities[cell(y) * 80 + cell(x)]; });
+    const Grains start = flow.grains();
+    const double duration = 0.01 * flow.spacing();
+    flow.advance(duration);
+    const Grains end = flow.grains();
+    const GrainMove move = flow.move(duration);
+    for (int j = 0; j < 20; ++j) {
+      for (int i = 0; i < 80; ++i) move.findFlow(i, j);
+    }
+    std::size_t went = 0;
+    for (int t = 0; t < start.grid.rows; ++t) {
+      for (int s = 0; s < start.grid.columns; ++s) {
+        const Grain& before = start.cells[start.grid.index(s, t, 0)];
+        const Grain& after = end.cells[start.grid.index(s, t, 0)];
+        const GrainPlace place = move.flow.placeOf(before, s, t, 0);
+        // Few leave their cells.
+        if (after.origin != before.origin || after.born != 0 || place.s != s || place.t != t) continue;
+        ASSERT_EQ(after.x, place.x) << s << ", " << t;
+        ASSERT_EQ(after.y, place.y) << s << ", " << t;
+        went += after.x != before.x ? 1 : 0;
+      }
+    }
+    EXPECT_GT(went, 16u);
+  }
+}
+
+TEST(GrainFlow, GivesNewGrainsTheOriginOfWhatWasUpstream) {
+  std::mt19937 random = seededGenerator();
+  for (int number = 0; number < 10; ++number) {
+    GivenFlow flow(20, 20, grainsOf(2, 2));
+    const Eigen::Vector2d cells(uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0));
+    flow.set([&](double, double) -> Eigen::Vector2d { return cells * flow.spacing(); });
+    flow.advance(1.0);
+    const Grains grains = flow.grains();
+    std::size_t generated = 0;
+    for (int d = 0; d < 2; ++d) {
+      for (int t = 4; t < grains.grid.rows - 4; ++t) {
+        for (int s = 4; s < grains.grid.columns - 4; ++s) {
+          const Grain& grain = grains.cells[grains.grid.index(s, t, d)];
+          if (grain.born == 0) continue;
+          const double x = s + static_cast<double>(grain.x) - cells.x();
+          const double y = t + static_cast<double>(grain.y) - cells.y();
+          // Too near to another cell to say.
+          if (std::abs(x - std::round(x)) < 1e-4 || std::abs(y - std::round(y)) < 1e-4) continue;
+          ASSERT_EQ(grain.origin, grains.grid.index(static_cast<int>(x), static_cast<int>(y), d));
+          ++generated;
+        }
+      }
+    }
+    EXPECT_GT(generated, 100u);
+  }
+}
+
 /// Of two grains that come close one is lost, but not ever more: who is left keeps its distance.
 TEST(GrainFlow, KeepsManyGrainsOnALongWayAndTheirPathsAreStraight) {
   std::mt19937 random = seededGenerator();
@@ -209,7 +300,7 @@ TEST(GrainFlow, CarriesOriginsAlong) {
   }
   const double error = std::sqrt(squares / count);
   std::printf("origins are %.2f cells off after 200, %.2f a move\n", error, cells);
-  EXPECT_LT(error, 3.0);
+  EXPECT_LT(error, 1.5);
 }
 
 /// Mean distance of grains from where the exact flow takes them. [m]
@@ -267,7 +358,8 @@ TEST(GrainFlow, ShearsExactly) {
 
 TEST(GrainFlow, StopsAtWallsAndLeavesOverOpenEdges) {
   std::mt19937 random = seededGenerator();
-  for (const bool is_open : {false, true}) {
+  for (int number = 0; number < 20; ++number) {
+    const bool is_open = number % 2 == 0;
     GivenFlow flow(randomCount(random, 3, 20), randomCount(random, 3, 20),
                    grainsOf(randomCount(random, 1, 4), 1));
     flow.open(is_open);
