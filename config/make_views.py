@@ -18,6 +18,8 @@ VIEWS = {
     "scenes/buried_plate": {"focus": (1.2, 0.6, 0.2), "distance": 2.4, "pitch": 0.6, "yaw": 0.55, "contours": 0.01},
     "scenes/cone_at_rest": {"focus": (2.0, 2.0, 0.25), "distance": 4.2, "pitch": 0.5, "yaw": 0.8},
     "scenes/fan": {"focus": (1.28, 1.28, 0.1), "distance": 3.3, "pitch": 0.75, "yaw": 0.4},
+    # Grains lie in the sand, below its surface.
+    "scenes/mixing": {"focus": (1.28, 1.28, 0.1), "distance": 3.3, "pitch": 0.9, "yaw": 0.4, "sand": False, "grains": True},
     "scenes/pile": {"focus": (0.0, 0.0, 0.12), "distance": 2.6, "pitch": 0.5, "yaw": 0.9},
     "scenes/terrain": {"focus": (3.8, 3.0, 0.2), "distance": 8.0, "pitch": 0.8, "yaw": -1.15},
     "scenes/three_shapes": {"focus": (2.6, 2.56, 0.0), "distance": 6.2, "pitch": 0.8, "yaw": 0.3},
@@ -32,7 +34,8 @@ def robot(view):
 
 def displays(view):
     shown = [robot(view)] if "robot" in view else []
-    shown.append({"Class": "shallow_sand/HeightField", "Name": "Sand", "Enabled": True, "Value": True, "Topic": "/sand_node/height_field",
+    shown.append({"Class": "shallow_sand/HeightField", "Name": "Sand", "Enabled": view.get("sand", True),
+                  "Value": view.get("sand", True), "Topic": "/sand_node/height_field",
                   "Color By": view.get("color_by", "Sand"), "Contour Interval": view.get("contours", 0)})
     shown.append({"Class": "rviz/MarkerArray", "Name": "Bodies", "Enabled": True, "Value": True, "Marker Topic": "/sand_node/bodies",
                   "Queue Size": 10, "Namespaces": {}})
@@ -41,7 +44,7 @@ def displays(view):
                   "Show Visual Aids": False, "Enable Transparency": True})
     grains = view.get("grains", False)
     shown.append({"Class": "rviz/PointCloud2", "Name": "Grains", "Enabled": grains, "Value": grains, "Topic": "/sand_node/particles",
-                  "Queue Size": 2, "Style": "Points", "Size (Pixels)": 2, "Alpha": 1, "Color Transformer": "RGB8",
+                  "Queue Size": 2, "Style": "Points", "Size (Pixels)": 4, "Alpha": 1, "Color Transformer": "RGB8",
                   "Position Transformer": "XYZ", "Use Fixed Frame": True, "Selectable": False})
     shown.append({"Class": "rviz/TF", "Name": "Frames", "Enabled": False, "Value": False, "Marker Scale": 0.5, "Show Names": True,
                   "Show Axes": True, "Show Arrows": False})

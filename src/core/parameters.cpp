@@ -8,6 +8,7 @@ namespace shallow_sand {
 namespace {
 
 constexpr double kMaximumCells = 268435456.0;  // 2^28: 7.5 GB of fields, and indices that fit an int
+constexpr double kMaximumGrains = 67108864.0;  // 2^26: 2.7 GB, and numbers that fit Claim
 
 std::string text(double value) {
   std::ostringstream stream;
@@ -98,6 +99,20 @@ void SolverParameters::validate() const {
   }
   requireStep("solver.max_step", max_step);
   if (fixed_step) requireStep("solver.fixed_step", *fixed_step);
+}
+
+void GrainParameters::validate(const Grid& grid) const {
+  const auto require = [](const std::string& key, int value, int most) {
+    if (value < 1 || value > most)
+      throw InvalidParameter(key, std::to_string(value), "a whole number from 1 to " + std::to_string(most));
+  };
+  require("grains.per_cell", per_cell, 64);
+  require("grains.layers", layers, 1024);
+  const double count = static_cast<double>(grid.cells()) * per_cell * per_cell * layers;
+  if (count > kMaximumGrains) {
+    throw InvalidParameter("grains", text(count) + " grains",
+                           "at most 2^26: fewer per_cell or layers, or a smaller grid");
+  }
 }
 
 void Region::validate() const {

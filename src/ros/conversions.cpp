@@ -2,9 +2,11 @@
 
 #include <sensor_msgs/point_cloud2_iterator.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "shallow_sand/surface/blocks.h"
+#include "shallow_sand/surface/surface_colour.h"
 #include "shallow_sand/surface/surface_mesh.h"
 
 namespace shallow_sand {
@@ -63,6 +65,33 @@ sensor_msgs::PointCloud2 toPointCloud(const Grid& grid, const Fields& fields, co
       value[3] = fields.allDepth(k);
       value[4] = packed(colours[k]);
     }
+  }
+  return cloud;
+}
+
+sensor_msgs::PointCloud2 toPointCloud(const Grid& grid, const Fields& fields, const GrainCloud& grains,
+                                      const std::string& frame, const ros::Time& stamp) {
+  sensor_msgs::PointCloud2 cloud;
+  cloud.header.frame_id = frame;
+  cloud.header.stamp = stamp;
+  cloud.is_dense = true;
+  sensor_msgs::PointCloud2Modifier modifier(cloud);
+  constexpr int kFloat = sensor_msgs::PointField::FLOAT32;
+  modifier.setPointCloud2Fields(4, "x", 1, kFloat, "y", 1, kFloat, "z", 1, kFloat, "rgb", 1, kFloat);
+  modifier.resize(grains.points.size());
+  const std::vector<float> light = visibleLight(grid, fields);
+  const auto cellAlong = [&](float position, double origin, int cells) {
+    const double cell = (static_cast<double>(position) - origin) / static_cast<double>(grid.spacing);
+    return std::clamp(static_cast<int>(cell), 0, cells - 1);
+  };
+  sensor_msgs::PointCloud2Iterator<float> value(cloud, "x");
+  for (std::size_t k = 0; k < grains.points.size(); ++k, ++value) {
+    value[0] = grains.points[k].x();
+    value[1] = grains.points[k].y();
+    value[2] = grains.points[k].z();
+    const int i = cellAlong(value[0], grid.origin_x, grid.columns);
+    const int j = cellAlong(value[1], grid.origin_y, grid.rows);
+    value[3] = packed((light[grid.index(i, j)] * grains.colors[k]).cwiseMin(1.0f));
   }
   return cloud;
 }

@@ -3,23 +3,9 @@
 #include <boost/make_shared.hpp>
 #include <utility>
 
+#include "shallow_sand/ros/queued_call.h"
+
 namespace shallow_sand {
-namespace {
-
-class Call : public ros::CallbackInterface {
- public:
-  explicit Call(std::function<void()> function) : function_(std::move(function)) {}
-  CallResult call() override {
-    function_();
-    return Success;
-  }
-
- private:
-  std::function<void()> function_;
-};
-
-}  // namespace
-
 FieldsFollower::FieldsFollower(const Grid& grid, double rate, Take take)
     : grid_(grid), period_(1.0 / rate), take_(std::move(take)), changed_(grid, 32, 8) {
   changed_.add(Window::all(grid));
@@ -36,7 +22,7 @@ void FieldsFollower::send(const Fields& fields, const ros::Time& stamp) {
   next_ = std::max(next_ + period_, ros::WallTime::now());
   change_ = changeOf(fields, changed_.take(), grid_, std::move(change_));
   busy_ = true;
-  queue_.addCallback(boost::make_shared<Call>([this, stamp] {
+  queue_.addCallback(boost::make_shared<QueuedCall>([this, stamp] {
     take_(change_, stamp);
     busy_ = false;
   }));

@@ -42,6 +42,10 @@ SandNode::SandNode()
                     constantsOf(simulator_), parameters_.height_field_rate, parameters_.publish_speed),
       surface_(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
                parameters_.publish_rate, static_cast<std::size_t>(parameters_.mesh_cells)) {
+  if (simulator_.parameters().grains) {
+    particles_.emplace(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
+                       parameters_.publish_rate);
+  }
   for (const RobotParameters& robot : parameters_.robots) {
     robots_.emplace_back(robot, parameters_.robots.size() == 1, simulator_.grid().spacing);
   }
@@ -86,6 +90,7 @@ void SandNode::update(const ros::Time& time) {
   busy_ += (ros::WallTime::now() - begin).toSec();
   if (last_status_.isZero() || time - last_status_ >= ros::Duration(1.0)) publishStatus(time);
   showBodies();
+  if (particles_ && particles_->isDue()) particles_->send(simulator_.grains(), simulator_.fields(), time);
   requestFields(time);
   // The CPU has computed all before it returned: fields need not wait for a frame.
   if (simulator_.backend() == Backend::cpu) handOverFields();
@@ -161,7 +166,11 @@ void SandNode::writeResults() const {
   if (!parameters_.report.empty()) {
     writeReport(parameters_.report, makeReport(simulator_, parameters_.scene.name, busy_));
   }
-  if (!parameters_.picture.empty()) writePicture(parameters_.picture, simulator_.grid(), simulator_.fields());
+  if (!parameters_.picture.empty()) {
+    const Fields fields = simulator_.fields();
+    writePicture(parameters_.picture, simulator_.grid(), fields, {},
+                 grainCloud(simulator_.grid(), fields, simulator_.grains()));
+  }
   if (!parameters_.mesh_file.empty()) {
     writeMesh(parameters_.mesh_file, surfaceMesh(simulator_.grid(), simulator_.fields()));
   }

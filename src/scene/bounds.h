@@ -20,6 +20,8 @@ inline constexpr Bound positive{[](double v) { return v >= 1e-9 && v <= 1e9; }, 
 inline constexpr Bound not_negative{[](double v) { return v >= 0.0 && v <= 1e9; }, "a number from 0 to 1e9"};
 inline constexpr Bound slope_angle{[](double v) { return v > 0.0 && v < 90.0; },
                                    "an angle above 0 and below 90 degrees"};
+inline constexpr Bound count{[](double v) { return v >= 1.0 && v <= 1e9 && v == std::floor(v); },
+                             "a whole number from 1 on"};
 inline constexpr Bound thread_count{[](double v) { return v >= 0.0 && v <= 4096.0 && v == std::floor(v); },
                                     "a whole number from 0 (as many as there are) to 4096"};
 

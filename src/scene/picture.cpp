@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <sstream>
 
 #include "canvas.h"
@@ -128,13 +129,51 @@ float grain(std::uint32_t x, std::uint32_t y) {
   return static_cast<float>((bits ^ (bits >> 16)) & 0xFFFFu) / 32767.5f - 1.0f;
 }
 
-void paintRelief(const Relief& relief, float bare_depth, Canvas& canvas) {
+/// For each pixel the colour of the highest grain over it, and how high that is; grains are 2 Δl wide. [m]
+struct GrainTones {
+  std::vector<Colour> colour;
+  std::vector<float> elevation;  ///< below everything where there is none
+
+  bool covers(std::size_t pixel) const { return elevation[pixel] > -std::numeric_limits<float>::max(); }
+};
+
+GrainTones tonesOf(const GrainCloud& grains, const Grid& grid, const Relief& relief) {
+  const int width = relief.surface.width;
+  const int height = relief.surface.height;
+  const std::size_t pixels = relief.surface.values.size();
+  GrainTones tones{std::vector<Colour>(pixels, Colour::Zero()),
+                   std::vector<float>(pixels, -std::numeric_limits<float>::max())};
+  const double north = grid.origin_y + grid.rows * static_cast<double>(grid.spacing);
+  const double radius = static_cast<double>(grains.spacing) / relief.pixel;
+  const auto first = [&](double place) {
+    return static_cast<int>(std::max(0.0, std::ceil(place - radius - 0.5)));
+  };
+  for (std::size_t k = 0; k < grains.points.size(); ++k) {
+    const Eigen::Vector3d point = grains.points[k].cast<double>();
+    const double x = (point.x() - grid.origin_x) / relief.pixel;
+    const double y = (north - point.y()) / relief.pixel;
+    for (int row = first(y); row < height && row + 0.5 <= y + radius; ++row) {
+      for (int column = first(x); column < width && column + 0.5 <= x + radius; ++column) {
+        const std::size_t pixel = static_cast<std::size_t>(row) * width + column;
+        if (std::hypot(column + 0.5 - x, row + 0.5 - y) > radius) continue;
+        if (grains.points[k].z() <= tones.elevation[pixel]) continue;
+        tones.elevation[pixel] = grains.points[k].z();
+        tones.colour[pixel] = grains.colors[k];
+      }
+    }
+  }
+  return tones;
+}
+
+void paintRelief(const Relief& relief, const GrainTones& grains, float bare_depth, Canvas& canvas) {
   static const Colour kRock(0.50f, 0.51f, 0.54f);
   const std::array<float, 2> range = toneRange(relief, bare_depth);
   for (int y = 0; y < relief.surface.height; ++y) {
     for (int x = 0; x < relief.surface.width; ++x) {
       const std::size_t k = static_cast<std::size_t>(y) * relief.surface.width + x;
-      const Colour sand = sandTone((relief.surface.values[k] - range[0]) / (range[1] - range[0]));
+      const Colour sand = grains.covers(k)
+                              ? grains.colour[k]
+                              : sandTone((relief.surface.values[k] - range[0]) / (range[1] - range[0]));
       const float covered = smoothStep(0.5f * bare_depth, 1.5f * bare_depth, relief.depth.values[k]);
       const Colour material = mix(kRock, sand, covered);
       const float rough = 1.0f + 0.03f * grain(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
@@ -182,7 +221,7 @@ void drawScaleBar(double pixel, Canvas& canvas) {
 }  // namespace
 
 void writePicture(const std::string& path, const Grid& grid, const Fields& fields,
-                  const std::vector<Outline>& outlines) {
+                  const std::vector<Outline>& outlines, const GrainCloud& grains) {
   if (fields.bed.size() != grid.cells() || fields.depth.size() != grid.cells()) {
     throw std::runtime_error(path + ": the fields do not hold one value for each cell");
   }
@@ -193,7 +232,7 @@ void writePicture(const std::string& path, const Grid& grid, const Fields& field
   Canvas canvas(width, height, kPaper);
   canvas.fillRectangle(kPictureBorder - 2, kPictureBorder - 2, relief.surface.width + 4,
                        relief.surface.height + 4, kInk);
-  paintRelief(relief, bareDepth(grid), canvas);
+  paintRelief(relief, tonesOf(grains, grid, relief), bareDepth(grid), canvas);
   for (const Outline& outline : outlines) {
     drawOutline(outline, grid, relief.pixel, canvas);
   }

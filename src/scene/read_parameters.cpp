@@ -53,6 +53,28 @@ SolverParameters readSolver(const SceneValue& solver) {
   return parameters;
 }
 
+/// One of two words.
+bool isFirst(const SceneValue& value, const std::string& first, const std::string& second) {
+  const std::string word = value.text();
+  if (word != first && word != second) value.fail(first + " or " + second);
+  return word == first;
+}
+
+GrainParameters readGrains(const SceneValue& grains) {
+  grains.requireMap({"per_cell", "layers", "speed", "color"});
+  GrainParameters parameters;
+  const auto read = [&](const char* key, int& target) {
+    if (const auto value = grains.find(key)) target = static_cast<int>(value->number(bounds::count));
+  };
+  read("per_cell", parameters.per_cell);
+  read("layers", parameters.layers);
+  if (const auto speed = grains.find("speed"))
+    parameters.speed = isFirst(*speed, "mean", "dilute") ? GrainSpeed::mean : GrainSpeed::dilute;
+  if (const auto color = grains.find("color"))
+    parameters.color = isFirst(*color, "origin", "layer") ? GrainColor::origin : GrainColor::layer;
+  return parameters;
+}
+
 }  // namespace
 
 SimulatorParameters readParameters(const SceneValue& root) {
@@ -71,6 +93,9 @@ SimulatorParameters readParameters(const SceneValue& root) {
   }
   if (const auto solver = root.find("solver")) {
     parameters.solver = readSolver(*solver);
+  }
+  if (const auto grains = root.find("grains")) {
+    parameters.grains = readGrains(*grains);
   }
   if (const auto backend = root.find("backend")) {
     root.check([&] { parameters.backend = backendFromString(backend->text()); });

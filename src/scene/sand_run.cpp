@@ -146,7 +146,10 @@ void writeResults(const Options& options, const Scene& scene, const Simulator& s
     writeReport(options.report, report);
   }
   if (!options.picture.empty()) {
-    writePicture(options.picture, simulator.grid(), simulator.fields(), footprints(scene, simulator.time()));
+    const Grid& grid = simulator.grid();
+    const Fields fields = simulator.fields();
+    writePicture(options.picture, grid, fields, footprints(scene, simulator.time()),
+                 grainCloud(grid, fields, simulator.grains()));
   }
   if (!options.mesh.empty()) {
     writeMesh(options.mesh, surfaceMesh(simulator.grid(), simulator.fields()));

@@ -30,7 +30,7 @@ Scene loadScene(const std::string& path) {
 Scene readScene(const YAML::Node& root_node, const std::string& source_name, const std::string& folder) {
   const SceneValue root(root_node, {source_name, folder});
   root.requireMap({"grid", "gravity", "material", "edges", "bed", "sand", "pours", "bodies", "solver",
-                   "duration", "backend", "threads"});
+                   "grains", "duration", "backend", "threads"});
   Scene scene;
   scene.source = source_name;
   scene.name = source_name;

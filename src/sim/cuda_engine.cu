@@ -95,6 +95,7 @@ CudaEngine::CudaEngine(const EngineStart& start, std::uint64_t steps_at_once)
       with_slopes_(start.with_slopes),
       displacement_(start.displacement),
       memory_(start),
+      grains_(grainMemoryOf<CudaMemory>(start)),
       tile_memory_(start.grid),
       rests_(std::vector<int>{0, 1}),
       courier_(start.grid, start.fields) {
@@ -316,6 +317,12 @@ void CudaEngine::restore(const Fields& fields, const ContactSnapshot& contacts) 
   last_placed_.clear();
   rests_ = CudaMemory<int>(std::vector<int>{0, 1});
   apart_ = CudaMemory<unsigned char>(memory_.distance_fields.size());
+}
+
+void CudaEngine::moveGrains(float duration, std::uint32_t number) {
+  const AwakeCells awake{tile_memory_.tiles(grid_), next_step_, blocks_.data(),
+                         static_cast<int>(tables_.blocks.size())};
+  ::shallow_sand::moveGrains(grains_->move(memory_.visibleSand(), duration, number), awake, stream_);
 }
 
 std::unique_ptr<Engine> makeCudaEngine(const EngineStart& start, std::uint64_t steps_at_once) {

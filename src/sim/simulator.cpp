@@ -116,6 +116,7 @@ void SimulatorParameters::validate() const {
   validateGravity(gravity);
   material.validate();
   solver.validate();
+  if (grains) grains->validate(grid.grid());
   if (threads < 0 || threads > 4096) {
     throw InvalidParameter("threads", std::to_string(threads), "0 (all) or a number up to 4096");
   }
@@ -161,6 +162,7 @@ class Simulator::Implementation {
     start.material = localMaterial(parameters_.material, material, grid_);
     start.displacement = parameters_.displacement;
     start.with_slopes = parameters_.solver.reconstruction == Reconstruction::minmod;
+    start.grains = parameters_.grains;
 #ifdef SHALLOW_SAND_WITH_CUDA
     if (chosen_.backend == Backend::cuda) {
       try {
@@ -220,6 +222,7 @@ class Simulator::Implementation {
     snapshot.next_step = trial_;
     snapshot.progress = progress_;
     snapshot.ledger = ledgerOf(snapshot.fields);
+    snapshot.grains = grains();
     return snapshot;
   }
 
@@ -237,6 +240,7 @@ class Simulator::Implementation {
     engine_->restore(fields, snapshot.contacts);
     placed_anew_ = !snapshot.bodies_cleared;
     time_ = snapshot.time;
+    restoreGrains(fields, snapshot.grains);
     notePlaced(instantAt(time_, nullptr));
     for (Body& body : bodies_) body.still = 0;
     steps_since_placed_ = 0;
@@ -258,6 +262,31 @@ class Simulator::Implementation {
     if (!(snapshot.next_step > 0.0))
       throw InvalidParameter("next_step", std::to_string(snapshot.next_step), "positive seconds");
     requireFit(snapshot.fields, snapshot.contacts);
+    requireFit(snapshot.grains);
+  }
+
+  void requireFit(const Grains& grains) const {
+    if (grains.cells.empty()) return;
+    const std::size_t count =
+        parameters_.grains ? static_cast<std::size_t>(GrainGrid(*parameters_.grains, grid_).cells()) : 0;
+    if (grains.cells.size() != count)
+      throw InvalidParameter("grains", std::to_string(grains.cells.size()),
+                             std::to_string(count) + " or none");
+    const auto isValid = [count](const Grain& grain) {
+      return grain.x >= 0.0f && grain.x < 1.0f && grain.y >= 0.0f && grain.y < 1.0f &&
+             (grain.origin & ~Grain::kBare) < count;
+    };
+    if (!std::all_of(grains.cells.begin(), grains.cells.end(), isValid))
+      throw InvalidParameter("grains", "a grain outside of its cell", "offsets from 0 to less than 1");
+  }
+
+  void restoreGrains(const Fields& fields, const Grains& grains) {
+    if (!parameters_.grains) return;
+    const bool anew = grains.cells.empty();
+    engine_->setGrains(anew ? startingGrains(GrainGrid(*parameters_.grains, grid_), grid_, fields)
+                            : grains.cells);
+    grain_moves_ = grains.moves;
+    grains_moved_until_ = time_;
   }
 
   void requireFit(const Fields& fields, const ContactSnapshot& contacts) const {
@@ -353,6 +382,23 @@ class Simulator::Implementation {
       take(run);
       if (time_ < end_) startRun();
     }
+    moveGrains();
+  }
+
+  /// Grains go on for as long as the sand has since they did the last time.
+  void moveGrains() {
+    if (!parameters_.grains || !(time_ > grains_moved_until_)) return;
+    engine_->moveGrains(static_cast<float>(time_ - grains_moved_until_), ++grain_moves_);
+    grains_moved_until_ = time_;
+  }
+
+  Grains grains() {
+    finish();
+    if (!parameters_.grains) return {};
+    Grains grains(*parameters_.grains, grid_);
+    grains.moves = grain_moves_;
+    grains.cells = engine_->grains();
+    return grains;
   }
 
   /// Takes steps until `end_`, or as far as a list of placements goes.
@@ -561,6 +607,8 @@ class Simulator::Implementation {
   double trial_ =
       std::numeric_limits<double>::infinity();  // length of the next step unless something forbids it [s]
   Progress progress_;
+  double grains_moved_until_ = 0.0;  // [s]
+  std::uint32_t grain_moves_ = 0;
   int steps_since_placed_ = 0;
   double end_ = 0.0;               // to which the sand is to be advanced [s]
   bool runs_ = false;              // the engine takes steps
@@ -620,6 +668,7 @@ void Simulator::requestFields() {
 const Fields& Simulator::collectFields() { return implementation_->engine_->collectFields(); }
 std::vector<Window> Simulator::takeChanges() { return implementation_->engine_->takeChanges(); }
 Fields Simulator::fields() const { return implementation_->fields(); }
+Grains Simulator::grains() const { return implementation_->grains(); }
 Ledger Simulator::ledger() const { return implementation_->ledger(); }
 const Progress& Simulator::progress() const {
   implementation_->finish();

@@ -44,11 +44,15 @@ TiledStepper::TiledStepper(const HostExecutor& executor, const Grid& grid, const
     scratch_.emplace_back(RowWalker<Step<true, true>>::scratchSize());
 }
 
-float TiledStepper::attempt(const StepArguments& arguments, const std::vector<Window>& bodies,
-                            const SandFieldsOut& out) {
+const std::vector<Window>& TiledStepper::due() {
   using Walker = RowWalker<Step<false, false>>;
   if (!options_.sleeping) tiles_.touch(Window::all(grid_));
-  rectangles_ = tiles_.due(Walker::kWidest, Walker::kHighest);
+  return tiles_.due(Walker::kWidest, Walker::kHighest);
+}
+
+float TiledStepper::attempt(const StepArguments& arguments, const std::vector<Window>& bodies,
+                            const SandFieldsOut& out) {
+  rectangles_ = due();
   cells_ = 0;
   stepped_ = Window{};
   for (const Window& cells : rectangles_) {

@@ -81,6 +81,10 @@ void surface(benchmark::State& state) {
   state.counters["best_cells_per_second"] = 1.0 / cells.best();
 }
 
+void restingGrains(benchmark::State& state) {
+  measureRestingGrains(state, restingSand(static_cast<int>(state.range(0)), 2, Edge::wall));
+}
+
 /// Two threads by turns with one, beside other processes that are busy on every core.
 void besideBusyProcesses(benchmark::State& state) {
   const int side = static_cast<int>(state.range(0));
@@ -114,6 +118,11 @@ void registerCpuBenchmarks() {
       ->Arg(1)
       ->Unit(benchmark::kMicrosecond);
   add("surface", surface)->ArgNames({"side"})->Arg(64)->Arg(512)->Arg(1024)->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("resting_grains", restingGrains)
+      ->ArgNames({"side"})
+      ->Arg(64)
+      ->Arg(1024)
+      ->Unit(benchmark::kMicrosecond);
   add("beside_busy_processes", besideBusyProcesses)
       ->ArgNames({"side", "others"})
       ->ArgsProduct({{64, 256, 1024}, {0, 1, 2}});

@@ -44,6 +44,11 @@ void resting(benchmark::State& state) {
   measureResting(state, onBackend(Backend::cuda, restingSand(side, 1, Edge::wall)));
 }
 
+void restingGrains(benchmark::State& state) {
+  const int side = static_cast<int>(state.range(0));
+  measureRestingGrains(state, onBackend(Backend::cuda, restingSand(side, 1, Edge::wall)));
+}
+
 /// An empty kernel that is waited for, as the results of a frame are; and one of many in a row.
 void launch(benchmark::State& state) {
   constexpr int kLaunches = 100;
@@ -97,6 +102,12 @@ void registerCudaBenchmarks() {
       ->ArgNames({"side"})
       ->RangeMultiplier(8)
       ->Range(64, 4096)
+      ->Unit(benchmark::kMicrosecond)
+      ->UseRealTime();
+  benchmark::RegisterBenchmark("resting_grains", telling(restingGrains))
+      ->ArgNames({"side"})
+      ->Arg(64)
+      ->Arg(1024)
       ->Unit(benchmark::kMicrosecond)
       ->UseRealTime();
   add("launch", launch, benchmark::kMicrosecond);

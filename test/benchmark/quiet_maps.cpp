@@ -24,4 +24,9 @@ void measureResting(benchmark::State& state, const Map& map) {
   state.counters["moving"] = static_cast<double>(simulator.activeCells());
 }
 
+void measureRestingGrains(benchmark::State& state, Map map) {
+  map.parameters.grains = GrainParameters();
+  measureResting(state, map);
+}
+
 }  // namespace shallow_sand

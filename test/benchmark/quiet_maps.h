@@ -14,4 +14,7 @@ void measurePatch(benchmark::State& state, Backend backend, int corner, int thre
 /// A frame of 1/50 s of a map at rest.
 void measureResting(benchmark::State& state, const Map& map);
 
+/// The same with 16 grains a cell.
+void measureRestingGrains(benchmark::State& state, Map map);
+
 }  // namespace shallow_sand

@@ -29,6 +29,13 @@ Scene emptySceneOf(const Table1Row& row, Backend backend) {
   return scene;
 }
 
+GrainParameters grainsOf(int per_cell, int layers) {
+  GrainParameters grains;
+  grains.per_cell = per_cell;
+  grains.layers = layers;
+  return grains;
+}
+
 }  // namespace
 
 std::vector<Table1Row> table1Rows() {
@@ -36,8 +43,8 @@ std::vector<Table1Row> table1Rows() {
   const std::string sketch = "t_d 4.8, t_i 4.1, t_p 70 ms";
   std::vector<Table1Row> rows = {
       {"figure_1_avalanche", 512, 512, 20, kWhole, {}, 0.02, fillAvalanche, "t_d 20 ms"},
-      {"figure_1_butterfly", 256, 256, 30, 10, {}, 0.02, fillButterfly, sketch},
-      {"figure_1_flattening", 256, 256, 30, 10, {}, 0.02, fillFlattening, sketch}};
+      {"figure_1_butterfly", 256, 256, 30, 10, {}, 0.02, fillButterfly, sketch, grainsOf(4, 1)},
+      {"figure_1_flattening", 256, 256, 30, 10, {}, 0.02, fillFlattening, sketch, grainsOf(4, 1)}};
   for (const int angle : {15, 30, 45, 60}) {
     const std::string name = "figure_5_pile_" + std::to_string(angle) + "_degrees";
     rows.push_back({name, 64, 64, 1.0 * angle, 5, 0.01, 0.5, fillPile, "t_d under 1 ms"});
@@ -47,14 +54,31 @@ std::vector<Table1Row> table1Rows() {
     const std::string name = "figure_6_layer_of_" + std::to_string(layer) + "_cells";
     rows.push_back({name, 256, 256, 30, 1.0 * layer, 0.01, 2.0, fillDamBreak, "t_d 1.6 ms"});
   }
-  rows.push_back(
-      {"figure_9_shapes", 256, 256, 30, 10, {}, 0.02, fillThreeShapes, "t_d 4.8, t_i 3.8, t_p 11 ms"});
+  rows.push_back({"figure_9_shapes",
+                  256,
+                  256,
+                  30,
+                  10,
+                  {},
+                  0.02,
+                  fillThreeShapes,
+                  "t_d 4.8, t_i 3.8, t_p 11 ms",
+                  grainsOf(4, 1)});
   rows.push_back({"figure_13_cars", 512, 256, 30, 10, {}, 0.02, fillCars, "t_d 10.3, t_i 5.8 ms"});
+  rows.push_back({"figure_14_writing", 512, 256, 30, 10, 0.002, 0.02, fillWriting,
+                  "t_d 5.1, t_i 4.1, t_p 9 ms", grainsOf(2, 1)});
+  rows.push_back({"figure_15b_column",
+                  64,
+                  64,
+                  30,
+                  10,
+                  {},
+                  0.02,
+                  fillTallColumn,
+                  "t_d under 1 ms, t_p 65 ms",
+                  grainsOf(2, 50)});
   rows.push_back(
-      {"figure_14_writing", 512, 256, 30, 10, 0.002, 0.02, fillWriting, "t_d 5.1, t_i 4.1, t_p 9 ms"});
-  rows.push_back(
-      {"figure_15b_column", 64, 64, 30, 10, {}, 0.02, fillTallColumn, "t_d under 1 ms, t_p 65 ms"});
-  rows.push_back({"figure_16_fan", 128, 128, 30, 10, {}, 0.02, fillFan, "t_d 1.6, t_i 1.2, t_p 17 ms"});
+      {"figure_16_fan", 128, 128, 30, 10, {}, 0.02, fillFan, "t_d 1.6, t_i 1.2, t_p 17 ms", grainsOf(4, 1)});
   return rows;
 }
 

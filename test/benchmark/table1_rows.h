@@ -19,6 +19,7 @@ struct Table1Row {
   double spacing;                    ///< ΔL [m]: with a fixed step so long that waves stay within C = 0.45
   void (*fill)(Scene&);              ///< puts sand and bodies on an empty map
   std::string paper;                 ///< what the paper's GTX 1060 took, a frame
+  std::optional<GrainParameters> grains{};  ///< those of the paper
 };
 
 /// All rows; where a row of the paper stands for several runs, each of these.

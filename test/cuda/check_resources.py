@@ -35,6 +35,7 @@ from pathlib import Path
 REGISTERS = [(re.compile("takeStepsOnGpuILb0ELb0E"), 128),
              (re.compile("takeStepsOnGpuILb0ELb1E"), 168),
              (re.compile("takeStepsOnGpuILb1E"), 255),
+             (re.compile("claimCells|settleGrains"), 96),
              (re.compile(""), 80)]
 
 Image = collections.namedtuple("Image", "architecture machine_code content")

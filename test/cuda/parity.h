@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cuda_device.h"
+#include "random_grains.h"
 #include "random_scene.h"
 #include "random_seed.h"
 #include "same_run.h"
@@ -55,6 +56,7 @@ inline void expectSame(const Simulator& one, const Simulator& other) {
   EXPECT_EQ(one.bodyOverlap(), other.bodyOverlap());
   EXPECT_EQ(one.maxSpeed(), other.maxSpeed());
   EXPECT_EQ(one.activeCells(), other.activeCells());
+  EXPECT_TRUE(sameBits(one.grains().cells, other.grains().cells));
 }
 
 /// A simulation on either backend, to which the same is done.

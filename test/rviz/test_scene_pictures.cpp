@@ -57,8 +57,8 @@ TEST_P(ScenePictures, ShowSandWithLightAndShadow) {
   ASSERT_NE(window->sand(), nullptr);
   ASSERT_TRUE(window->runUntil([&] { return status && status->simulated_time >= scene.time; }, 60.0))
       << "the sand did not run on to " << scene.time << " s";
-  ASSERT_TRUE(window->runUntil([&] { return !window->sand()->mapFrame().empty(); }, 10.0)) << "no map came";
-  ASSERT_TRUE(window->runFrames(5, 30.0));
+  EXPECT_TRUE(window->runUntil([&] { return shareOfSand(window->picture()) > scene.least_share; }, 20.0))
+      << "no sand is to be seen";
   EXPECT_EQ(window->errors(), "");
 
   const QImage picture = window->picture();
@@ -79,7 +79,6 @@ TEST_P(ScenePictures, ShowSandWithLightAndShadow) {
   const double deviation = std::sqrt(std::max(squares / sand - sum / sand * sum / sand, 0.0));
   std::cout << file << ": " << 100.0 * shareOfSand(picture)
             << " % of the picture is sand, its brightness varies by " << deviation << "\n";
-  EXPECT_GT(shareOfSand(picture), scene.least_share);
   EXPECT_GT(deviation, 0.02);
 }
 
@@ -87,8 +86,8 @@ INSTANTIATE_TEST_SUITE_P(OfScenes, ScenePictures,
                          testing::Values(ScenePicture{"blade", 3.0, 0.25}, ScenePicture{"bucket", 2.5, 0.01},
                                          ScenePicture{"buried_plate", 3.0, 0.25},
                                          ScenePicture{"cone_at_rest", 0.5, 0.15},
-                                         ScenePicture{"fan", 2.0, 0.25}, ScenePicture{"pile", 3.0, 0.05},
-                                         ScenePicture{"terrain", 2.0, 0.1},
+                                         ScenePicture{"fan", 2.0, 0.25}, ScenePicture{"mixing", 2.0, 0.2},
+                                         ScenePicture{"pile", 3.0, 0.05}, ScenePicture{"terrain", 2.0, 0.1},
                                          ScenePicture{"three_shapes", 3.0, 0.25}),
                          [](const auto& info) { return std::string(info.param.name); });
 

@@ -34,6 +34,7 @@ solver:   {reconstruction: constant, courant: 0.45, max_step: 0.01, fixed_step: 
 duration: 10.0
 backend: cpu
 threads: 2
+grains:   {per_cell: 2, layers: 3, speed: dilute, color: layer}
 )";
 
 }  // namespace shallow_sand

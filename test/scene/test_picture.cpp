@@ -108,6 +108,20 @@ TEST(Picture, SandIsWarmAndBareBedIsGrey) {
   EXPECT_LT(std::abs(warmth(picture.colourAt(0.05, 0.05))), 0.05);
 }
 
+/// Two grains over each other, each of which covers the whole sand; the bare bed has none.
+TEST(Picture, SandHasTheColourOfTheHighestGrain) {
+  const Grid grid = gridOf(80, 80);
+  GrainCloud grains;
+  grains.spacing = 80 * grid.spacing;
+  const float middle = 40 * grid.spacing;
+  grains.points = {{middle, middle, 0.2f}, {middle, middle, 0.1f}};
+  grains.colors = {{0.2f, 0.3f, 0.9f}, {0.9f, 0.3f, 0.2f}};
+  writePicture("grains.png", grid, pileOn(grid), {}, grains);
+  const Png picture("grains.png");
+  EXPECT_LT(warmth(picture.colourAt(0.4, 0.4)), -0.2);
+  EXPECT_LT(std::abs(warmth(picture.colourAt(0.05, 0.05))), 0.05);
+}
+
 TEST(Picture, LevelSandIsOneTone) {
   const Grid grid = gridOf(50, 40);
   Fields fields;

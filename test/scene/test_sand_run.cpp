@@ -129,6 +129,13 @@ TEST(SandRun, WritesWhatItPromises) {
   EXPECT_EQ(contentsOf("m.ply").rfind("ply\n", 0), 0u);
 }
 
+TEST(SandRun, TellsHowManyGrainsThereAre) {
+  const std::string scene = sceneFile(std::string(kSmallScene) + "grains: {per_cell: 3, layers: 2}\n");
+  const Outcome outcome = sandRun(scene + " --backend cpu --report grains.json --picture grains.png");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_EQ(nlohmann::json::parse(contentsOf("grains.json")).at("grains"), 40 * 25 * 18);
+}
+
 TEST(SandRun, SaysWhatItCanDo) {
   EXPECT_EQ(sandRun("--help").exit_code, 0);
   EXPECT_EQ(sandRun("--version").exit_code, 0);

@@ -49,6 +49,11 @@ TEST(Scene, FullSceneGivesWhatItSays) {
   EXPECT_EQ(scene.parameters.solver.fixed_step, 0.002);
   EXPECT_EQ(scene.parameters.backend, Backend::cpu);
   EXPECT_EQ(scene.parameters.threads, 2);
+  ASSERT_TRUE(scene.parameters.grains.has_value());
+  EXPECT_EQ(scene.parameters.grains->per_cell, 2);
+  EXPECT_EQ(scene.parameters.grains->layers, 3);
+  EXPECT_EQ(scene.parameters.grains->speed, GrainSpeed::dilute);
+  EXPECT_EQ(scene.parameters.grains->color, GrainColor::layer);
   EXPECT_EQ(scene.duration, 10.0);
   ASSERT_EQ(scene.pours.size(), 1u);
   EXPECT_EQ(scene.pours[0].rate, 0.01);
@@ -66,6 +71,7 @@ TEST(Scene, AnEmptyMapGivesTheDefaults) {
   EXPECT_EQ(*std::max_element(scene.depth.begin(), scene.depth.end()), 0.0f);
   EXPECT_EQ(scene.parameters.material.friction_angle, Material().friction_angle);
   EXPECT_TRUE(scene.bodies.empty());
+  EXPECT_FALSE(scene.parameters.grains.has_value());
 }
 
 TEST(Scene, SandIsAddedInOrder) {
@@ -155,7 +161,13 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"depth: 0.3", "depth: -0.3", "7: sand[0]: takes 0.3 m", "at most the 0 m"},
         Mistake{"depth: 0.4}", "depth: -0.5}", "10: sand[3]: takes 0.5 m", "at most the 0.4 m"},
         Mistake{"duration: 10.0", "duration: -1", "26: duration: -1;", "from 0"},
-        Mistake{"threads: 2", "threads: 1.5", "28: threads: 1.5;", "whole number"}));
+        Mistake{"threads: 2", "threads: 1.5", "28: threads: 1.5;", "whole number"},
+        Mistake{"per_cell: 2", "per_cell: 0", "29: grains.per_cell: 0;", "a whole number from 1"},
+        Mistake{"per_cell: 2", "per_cell: 2.5", "29: grains.per_cell: 2.5;", "a whole number from 1"},
+        Mistake{"per_cell: 2", "per_cell: 65", "29: grains.per_cell: 65;", "from 1 to 64"},
+        Mistake{"layers: 3", "layers: 1025", "29: grains.layers: 1025;", "from 1 to 1024"},
+        Mistake{"per_cell: 2, layers: 3", "per_cell: 64, layers: 2", "29: grains: ", "at most 2^26"},
+        Mistake{"layers: 3", "layers: .inf", "29: grains.layers: .inf;", "a whole number from 1"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Structure, SceneMistakes,
@@ -182,7 +194,12 @@ INSTANTIATE_TEST_SUITE_P(
                 "21: bodies[1].motion: ", "at least one pose"},
         Mistake{"{sphere: 0.2}", "{sphere: 0.2, box: [1, 1, 1]}", "23: bodies[2].shape: a map of 2",
                 "exactly one"},
-        Mistake{"backend: cpu", "backend: tpu", "27: backend: tpu;", "auto, cpu or cuda"}));
+        Mistake{"backend: cpu", "backend: tpu", "27: backend: tpu;", "auto, cpu or cuda"},
+        Mistake{"speed: dilute", "speed: fast", "29: grains.speed: fast;", "mean or dilute"},
+        Mistake{"color: layer", "color: red", "29: grains.color: red;", "origin or layer"},
+        Mistake{"{per_cell: 2, layers: 3, speed: dilute, color: layer}", "true", "29: grains: true;",
+                "a map"},
+        Mistake{"per_cell: 2", "per_sell: 2", "29: grains.per_sell: unknown key", "did you mean per_cell?"}));
 
 INSTANTIATE_TEST_SUITE_P(Meshes, SceneMistakes,
                          ::testing::Values(Mistake{"{sphere: 0.2}", "{mesh: /no_such.stl}",
@@ -216,7 +233,7 @@ TEST(Scene, FilesThatAreNoScenesAreRefused) {
 }
 
 TEST(Scene, ExamplesLoad) {
-  for (const std::string name : {"blade", "pile", "cone_at_rest", "terrain"}) {
+  for (const std::string name : {"blade", "pile", "cone_at_rest", "terrain", "mixing"}) {
     const Scene scene = loadScene(SHALLOW_SAND_SOURCE_DIR "/config/scenes/" + name + ".yaml");
     EXPECT_EQ(scene.name, name);
   }

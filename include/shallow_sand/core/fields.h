@@ -31,9 +31,9 @@ struct Fields {
   }
   /// Depth of all sand of a cell. [m]
   float allDepth(std::size_t cell) const { return load.empty() ? depth[cell] : depth[cell] + load[cell]; }
+  static constexpr float kDust = 0.001f;  ///< sand of a load that one does not see [m]
   /// Whether so much lies on a body that one sees it: grains that hang on to a link are no surface of sand.
   bool hasLoad(std::size_t cell) const {
-    constexpr float kDust = 0.001f;  // [m]
     return !load.empty() && load[cell] >= kDust;
   }
 };

@@ -73,6 +73,29 @@ struct SolverParameters {
   void validate() const;  ///< @throws InvalidParameter
 };
 
+/// How fast grains go (Eq. 31).
+enum class GrainSpeed {
+  mean,   ///< as the paper prints it: with the mean velocity of the whole depth
+  dilute  ///< those within the dilute layer by h/h̄ faster, those below it not at all
+};
+
+/// What grains get their colours from.
+enum class GrainColor {
+  origin,  ///< where they were at the start
+  layer    ///< their layer
+};
+
+/// Grains that show how the sand moves (section 6). Scene key `grains`.
+struct GrainParameters {
+  int per_cell = 4;  ///< along x and along y, in each cell of the grid: ΔL/Δl; from 1 to 64
+  int layers = 1;    ///< one below the other, Δl high; from 1 to 1024
+  GrainSpeed speed = GrainSpeed::mean;
+  GrainColor color = GrainColor::origin;
+
+  /// At most 2^26 grains in all. @throws InvalidParameter
+  void validate(const Grid& grid) const;
+};
+
 /// A part of the map, in the grid's frame.
 struct Region {
   enum class Shape { disc, rectangle };

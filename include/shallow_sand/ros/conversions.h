@@ -8,6 +8,7 @@
 
 #include "shallow_sand/core/fields.h"
 #include "shallow_sand/core/grid.h"
+#include "shallow_sand/particles/grains.h"
 
 namespace shallow_sand {
 
@@ -15,6 +16,10 @@ namespace shallow_sand {
 /// intensity [m]; and rgb, the colour as rviz and PCL pack it.
 sensor_msgs::PointCloud2 toPointCloud(const Grid& grid, const Fields& fields, const std::string& frame,
                                       const ros::Time& stamp);
+
+/// Grains: x, y, z [m] and rgb, in the light that falls on the sand where they are.
+sensor_msgs::PointCloud2 toPointCloud(const Grid& grid, const Fields& fields, const GrainCloud& grains,
+                                      const std::string& frame, const ros::Time& stamp);
 
 /// Most cells that a marker holds whatever they look like: one takes 240 bytes, thrice that where a shore
 /// cuts all its triangles and as much again where it has a load, and ROS drops messages of a gigabyte.

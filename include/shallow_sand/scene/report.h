@@ -22,6 +22,7 @@ struct Report {
   double max_speed_end = 0.0;  ///< [m/s]
   Ledger volume;
   double body_overlap = 0.0;  ///< [m³]
+  std::size_t grains = 0;
 };
 
 /// Takes the figures of a simulator that ran for `wall` [s].

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "shallow_sand/device/cuda_memory.cuh"
 #include "shallow_sand/sim/field_courier.cuh"
+#include "shallow_sand/sim/grains_on_gpu.cuh"
 #include "shallow_sand/sim/run_tables.h"
 #include "shallow_sand/sim/sand_memory.h"
 #include "shallow_sand/sim/sand_on_gpu.cuh"
@@ -33,6 +35,9 @@ class CudaEngine : public Engine {
   double poured() const override { return memory_.poured(); }
   double left() const override { return memory_.left(); }
   double overlap(const std::vector<PlacedBody>& bodies) override;
+  void moveGrains(float duration, std::uint32_t number) override;
+  std::vector<Grain> grains() override { return grains_->get(); }
+  void setGrains(const std::vector<Grain>& grains) override { grains_->set(grains); }
   ContactSnapshot contacts() const override { return memory_.snapshot(held_); }
   void restore(const Fields& fields, const ContactSnapshot& contacts) override;
 
@@ -65,6 +70,7 @@ class CudaEngine : public Engine {
   bool displacement_;
   CudaStream stream_;
   SandMemory<CudaMemory> memory_;
+  std::optional<GrainMemory<CudaMemory>> grains_;
   TileMemory tile_memory_;
   CudaMemory<Ballots> ballots_{1};
   CudaMemory<int> rests_;

@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "shallow_sand/device/instruction_set.h"
 #include "shallow_sand/device/window.h"
+#include "shallow_sand/particles/grain.h"
 #include "shallow_sand/sim/body_windows.h"
 #include "shallow_sand/sim/simulator.h"
 #include "shallow_sand/sim/step_run.h"
@@ -54,6 +56,11 @@ class Engine {
   /// Sand inside of these bodies. [m³]
   virtual double overlap(const std::vector<PlacedBody>& bodies) = 0;
 
+  /// Grains go on with the velocities that the sand has now, as in this time [s]. Moves are numbered from 1.
+  virtual void moveGrains(float duration, std::uint32_t number) = 0;
+  virtual std::vector<Grain> grains() = 0;
+  virtual void setGrains(const std::vector<Grain>& grains) = 0;
+
   virtual ContactSnapshot contacts() const = 0;
   /// Goes on from fields and contacts that were taken from an engine like this one.
   virtual void restore(const Fields& fields, const ContactSnapshot& contacts) = 0;
@@ -81,6 +88,7 @@ struct EngineStart {
   LocalMaterialFields material;
   bool with_slopes;   ///< minmod reconstruction
   bool displacement;  ///< see SimulatorParameters
+  std::optional<GrainParameters> grains{};
 };
 
 /// @param sleeping whether cells that cannot move are left out

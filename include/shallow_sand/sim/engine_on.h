@@ -12,6 +12,7 @@
 #include "shallow_sand/coupling/meet_bodies.h"
 #include "shallow_sand/coupling/pushed_sand.h"
 #include "shallow_sand/device/tile_set.h"
+#include "shallow_sand/particles/grains_on_host.h"
 #include "shallow_sand/sim/sand_memory.h"
 
 namespace shallow_sand {
@@ -34,6 +35,7 @@ class EngineOn : public SteppedEngine {
         grid_(start.grid),
         displacement_(start.displacement),
         memory_(start),
+        grains_(grainMemoryOf<Executor::template Memory>(start)),
         changed_(start.grid, kCopiedColumns, kCopiedRows),
         collected_(start.grid, kCopiedColumns, kCopiedRows) {}
 
@@ -146,6 +148,17 @@ class EngineOn : public SteppedEngine {
     const std::vector<float> depths = memory_.downloaded(overlap);
     return std::accumulate(depths.begin(), depths.end(), 0.0) * grid_.cellArea();
   }
+
+  void moveGrains(float duration, std::uint32_t number) override {
+    std::vector<Window> awake = stepper_.due();
+    // Loads may move where no tile is due.
+    awake.insert(awake.end(), windows_.begin(), windows_.end());
+    if (!awake.empty()) {
+      ::shallow_sand::moveGrains(executor_, grains_->move(memory_.visibleSand(), duration, number), awake);
+    }
+  }
+  std::vector<Grain> grains() override { return grains_->get(); }
+  void setGrains(const std::vector<Grain>& grains) override { grains_->set(grains); }
 
   ContactSnapshot contacts() const override { return memory_.snapshot(windows_); }
 
@@ -426,6 +439,7 @@ class EngineOn : public SteppedEngine {
   Grid grid_;
   bool displacement_;
   Sand memory_;
+  std::optional<GrainMemory<Executor::template Memory>> grains_;
   StepArguments attempted_{};
   StepRun run_{};
   Fields requested_;

@@ -5,14 +5,24 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "shallow_sand/coupling/contact.h"
+#include "shallow_sand/particles/grain_memory.h"
 #include "shallow_sand/sim/engine.h"
 #include "shallow_sand/solver/change_sand.h"
 
 namespace shallow_sand {
+
+/// The grains that an engine starts with, if there are some.
+template <template <class> class Memory>
+std::optional<GrainMemory<Memory>> grainMemoryOf(const EngineStart& start) {
+  if (!start.grains) return std::nullopt;
+  const GrainGrid grains(*start.grains, start.grid);
+  return GrainMemory<Memory>(*start.grains, start.grid, startingGrains(grains, start.grid, start.fields));
+}
 
 /// The sand of a grid, and what bodies and pours have to do with it, on the memory of a backend.
 template <template <class> class Memory>
@@ -226,6 +236,11 @@ class SandMemory {
   SandColumns columns() {
     Contacts& c = contacts.front();
     return {state.layer(), c.hidden.layer(), c.visible_bed.data(), c.ceiling.data(), c.cover.data()};
+  }
+
+  VisibleSand visibleSand() {
+    const bool with_bodies = !contacts.empty();
+    return {{stepOf(false)}, with_bodies ? columns() : SandColumns{}, with_bodies};
   }
 
   /// @param near_bodies whether some column may have a body above it

@@ -12,6 +12,7 @@
 #include "shallow_sand/core/parameters.h"
 #include "shallow_sand/device/instruction_set.h"
 #include "shallow_sand/device/window.h"
+#include "shallow_sand/particles/grains.h"
 #include "shallow_sand/sim/step_run.h"
 
 namespace shallow_sand {
@@ -29,6 +30,7 @@ struct SimulatorParameters {
   Material material;
   Edges edges;
   SolverParameters solver;
+  std::optional<GrainParameters> grains;  ///< none unless given
   Backend backend = Backend::automatic;
   int threads = 0;  ///< of the CPU backend; 0: as many as OpenMP offers
   /// Whether sand makes way for bodies; false: Eq. 20 to 24 alone, to compare with the paper.
@@ -73,6 +75,7 @@ struct Snapshot {
   double next_step = 0.0;       ///< length that would be tried next [s], may be infinite
   Progress progress;
   Ledger ledger;
+  Grains grains;  ///< those that there are; if it has none, grains start anew
 };
 
 /// The one façade over the solver, its bodies and its backends. Not thread-safe; several may live in one
@@ -138,6 +141,9 @@ class Simulator {
   /// collected before this was asked the last time; the whole map the first time, and where the bed is
   /// another or bodies are the first ones.
   std::vector<Window> takeChanges();
+  /// The grains as they are now, which go on once at the end of each advance; none without
+  /// SimulatorParameters::grains. What of them is seen, and where, grainCloud tells of any copy.
+  Grains grains() const;
   Ledger ledger() const;
   const Progress& progress() const;
   double maxSpeed() const;          ///< of the sand now [m/s]

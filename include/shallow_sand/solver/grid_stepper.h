@@ -16,6 +16,7 @@ class GridStepper {
   /// Cells of the window were changed from outside.
   void touch(const Window&) {}
   bool isDue(const Window&) const { return true; }
+  std::vector<Window> due() const { return {stepped_}; }
 
   /// Computes the next state. Returns the largest signal speed of the present one. [m/s]
   /// @param bodies columns that bodies may touch

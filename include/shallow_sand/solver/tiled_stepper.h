@@ -27,6 +27,8 @@ class TiledStepper {
 
   /// Whether the next step computes any cell of the window.
   bool isDue(const Window& cells) const { return tiles_.isDue(cells); }
+  /// Windows that hold all cells that it computes. Valid until the next attempt.
+  const std::vector<Window>& due();
 
   /// Computes the next state. Returns the largest signal speed of the present one. [m/s]
   /// @param bodies columns that bodies may touch
