@@ -13,16 +13,16 @@ VIEWS = {
     "robots/zx120": {"focus": (2.8, 1.2, 0.8), "distance": 14.0, "pitch": 0.55, "yaw": 0.85, "robot": "collision"},
     "robots/leo": {"focus": (1.2, 0.25, 0.0), "distance": 2.6, "pitch": 0.6, "yaw": -2.2, "robot": "visual"},
     "robots/anymal": {"focus": (0.2, 0.0, 0.15), "distance": 2.6, "pitch": 0.4, "yaw": 0.9, "robot": "visual"},
-    "scenes/blade": {"focus": (2.0, 0.95, 0.1), "distance": 4.0, "pitch": 0.6, "yaw": 0.55},
-    "scenes/bucket": {"focus": (1.0, 0.8, 0.2), "distance": 2.0, "pitch": 0.6, "yaw": -2.3},
-    "scenes/buried_plate": {"focus": (1.2, 0.6, 0.2), "distance": 2.4, "pitch": 0.6, "yaw": 0.55, "contours": 0.01},
+    "scenes/blade": {"focus": (1.7, 1.0, 0.1), "distance": 3.6, "pitch": 0.6, "yaw": 0.55},
+    "scenes/bucket": {"focus": (0.85, 0.8, 0.15), "distance": 1.7, "pitch": 1.0, "yaw": -2.3},
+    "scenes/buried_plate": {"focus": (1.0, 0.6, 0.25), "distance": 2.0, "pitch": 0.6, "yaw": 0.55, "contours": 0.01},
     "scenes/cone_at_rest": {"focus": (2.0, 2.0, 0.25), "distance": 4.2, "pitch": 0.5, "yaw": 0.8},
     "scenes/fan": {"focus": (1.28, 1.28, 0.1), "distance": 3.3, "pitch": 0.75, "yaw": 0.4},
     # Grains lie in the sand, below its surface.
-    "scenes/mixing": {"focus": (1.28, 1.28, 0.1), "distance": 3.3, "pitch": 0.9, "yaw": 0.4, "sand": False, "grains": True},
+    "scenes/mixing": {"focus": (1.28, 1.28, 0.1), "distance": 3.3, "pitch": 0.9, "yaw": 0.4, "grains": True},
     "scenes/pile": {"focus": (0.0, 0.0, 0.12), "distance": 2.6, "pitch": 0.5, "yaw": 0.9},
     "scenes/terrain": {"focus": (3.8, 3.0, 0.2), "distance": 8.0, "pitch": 0.8, "yaw": -1.15},
-    "scenes/three_shapes": {"focus": (2.6, 2.56, 0.0), "distance": 6.2, "pitch": 0.8, "yaw": 0.3},
+    "scenes/three_shapes": {"focus": (2.2, 2.56, 0.0), "distance": 5.6, "pitch": 0.8, "yaw": 0.3},
 }
 
 
@@ -34,8 +34,8 @@ def robot(view):
 
 def displays(view):
     shown = [robot(view)] if "robot" in view else []
-    shown.append({"Class": "shallow_sand/HeightField", "Name": "Sand", "Enabled": view.get("sand", True),
-                  "Value": view.get("sand", True), "Topic": "/sand_node/height_field",
+    shown.append({"Class": "shallow_sand/HeightField", "Name": "Sand", "Enabled": True, "Value": True,
+                  "Topic": "/sand_node/height_field", "Show Sand": not view.get("grains", False),
                   "Color By": view.get("color_by", "Sand"), "Contour Interval": view.get("contours", 0)})
     shown.append({"Class": "rviz/MarkerArray", "Name": "Bodies", "Enabled": True, "Value": True, "Marker Topic": "/sand_node/bodies",
                   "Queue Size": 10, "Namespaces": {}})

@@ -1,6 +1,8 @@
 #include "shallow_sand/rviz/height_field_display.h"
 
 #include <OGRE/OgreRay.h>
+#include <OGRE/OgreRenderSystem.h>
+#include <OGRE/OgreRoot.h>
 #include <ros/message_traits.h>
 #include <rviz/display_context.h>
 #include <rviz/frame_manager.h>
@@ -27,6 +29,18 @@ ColorBy colorBy(rviz::EnumProperty& property) { return static_cast<ColorBy>(prop
 ShownValue::Kind valueOf(ColorBy what) {
   if (what == ColorBy::speed) return ShownValue::Kind::speed;
   return what == ColorBy::change ? ShownValue::Kind::rise : ShownValue::Kind::none;
+}
+
+/// Whether the processor draws: Mesa's drivers without a graphics card.
+bool isDrawnInSoftware() {
+  const std::string name = Ogre::Root::getSingleton().getRenderSystem()->getCapabilities()->getDeviceName();
+  return name.find("llvmpipe") != std::string::npos || name.find("softpipe") != std::string::npos ||
+         name.find("Software Rasterizer") != std::string::npos;
+}
+
+std::size_t mostTriangles(int chosen) {
+  if (chosen > 0) return static_cast<std::size_t>(chosen);
+  return isDrawnInSoftware() ? 100000 : 4000000;
 }
 
 std::vector<float> elevationsOf(const HeightField& map) {
@@ -72,14 +86,18 @@ HeightFieldDisplay::HeightFieldDisplay() {
       new rviz::FloatProperty("Alpha", 1.0f, "1: opaque; less: one sees through.", this, SLOT(changeShape()));
   alpha_->setMin(0.0f);
   alpha_->setMax(1.0f);
+  show_sand_ = new rviz::BoolProperty(
+      "Show Sand", true, "Off: only the bed below, for instance where grains stand for the sand.", this,
+      SLOT(changeShape()));
   sides_ = new rviz::BoolProperty("Show Sides", true,
                                   "Whether the cut through the sand along the map's sides is drawn.", this,
                                   SLOT(changeShape()));
-  most_triangles_ = new rviz::IntProperty(
-      "Max Triangles", 4000000,
-      "A map with more is drawn with every second, fourth ... cell. Less is faster on slow graphics.", this,
-      SLOT(changeShape()));
-  most_triangles_->setMin(1000);
+  most_triangles_ = new rviz::IntProperty("Max Triangles", 0,
+                                          "A map with more is drawn with every second, third ... cell. 0: 4 "
+                                          "million, or 100 000 where the processor "
+                                          "draws instead of a graphics card.",
+                                          this, SLOT(changeShape()));
+  most_triangles_->setMin(0);
 }
 
 HeightFieldDisplay::~HeightFieldDisplay() = default;
@@ -260,9 +278,10 @@ void HeightFieldDisplay::changeContours() {
 void HeightFieldDisplay::changeShape() {
   if (!visual_) return;
   visual_->material().setAlpha(alpha_->getFloat());
+  visual_->material().showSand(show_sand_->getBool());
   visual_->showSides(sides_->getBool());
   const HeightField* map = subscriber_ ? subscriber_->field() : nullptr;
-  if (map != nullptr) visual_->setMostTriangles(*map, static_cast<std::size_t>(most_triangles_->getInt()));
+  if (map != nullptr) visual_->setMostTriangles(*map, mostTriangles(most_triangles_->getInt()));
   context_->queueRender();
 }
 

@@ -1,6 +1,7 @@
 #include "shallow_sand/rviz/height_field_visual.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace shallow_sand {
 namespace {
@@ -90,8 +91,9 @@ void HeightFieldVisual::setPose(const Ogre::Vector3& position, const Ogre::Quate
 }
 
 void HeightFieldVisual::setMostTriangles(const HeightField& map, std::size_t most) {
-  std::uint32_t stride = 1;
-  while (stride < PatchGrid::kCells && 2 * map.depth.size() / stride / stride > most) stride *= 2;
+  const double drawn_of_all = static_cast<double>(most) / (2.0 * static_cast<double>(map.depth.size()));
+  const auto stride = static_cast<std::uint32_t>(
+      std::clamp(std::ceil(std::sqrt(1.0 / drawn_of_all)), 1.0, static_cast<double>(PatchGrid::kCells)));
   if (stride == stride_) return;
   stride_ = stride;
   triangles_.clear();

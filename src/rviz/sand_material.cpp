@@ -98,6 +98,12 @@ void SandMaterial::setContourInterval(float interval) {
   set("contour_interval", static_cast<Ogre::Real>(interval));
 }
 
+void SandMaterial::showSand(bool shown) {
+  const Ogre::Real value = shown ? 1.0f : 0.0f;
+  set("show_sand", value);
+  passOf(material_)->getVertexProgramParameters()->setNamedConstant("show_sand", value);
+}
+
 void SandMaterial::setAlpha(float alpha) {
   set("alpha", static_cast<Ogre::Real>(alpha));
   Ogre::Pass* pass = passOf(material_);

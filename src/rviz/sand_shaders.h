@@ -5,19 +5,16 @@ namespace shallow_sand {
 /// GLSL 1.20: what software rendering and old graphics cards know, too.
 constexpr char kVertexShader[] = R"(#version 120
 uniform mat4 to_screen;
-varying vec3 place;   // from the map's corner [m]
-varying vec3 normal;
-varying float depth;
-varying float value;
-varying float openness;
+uniform float show_sand;
+varying vec4 place_and_depth;  // from the map's corner [m]
+varying vec4 normal_value_openness; // the normal's x and y
+
 
 void main() {
-  gl_Position = to_screen * gl_Vertex;
-  place = gl_Vertex.xyz;
-  normal = gl_Normal;
-  depth = gl_MultiTexCoord0.x;
-  value = gl_MultiTexCoord0.y;
-  openness = gl_MultiTexCoord0.z;
+  place_and_depth = vec4(gl_Vertex.xyz, gl_MultiTexCoord0.x);
+  if (show_sand < 0.5) place_and_depth.z -= max(place_and_depth.w, 0.0);
+  gl_Position = to_screen * vec4(place_and_depth.xyz, 1.0);
+  normal_value_openness = vec4(gl_Normal.xy, gl_MultiTexCoord0.yz);
 }
 )";
 
@@ -35,11 +32,10 @@ uniform vec4 palette5;
 uniform float shore;
 uniform float contour_interval;
 uniform float alpha;
-varying vec3 place;
-varying vec3 normal;
-varying float depth;
-varying float value;
-varying float openness;
+uniform float show_sand;
+varying vec4 place_and_depth;
+varying vec4 normal_value_openness;
+vec3 place;
 
 vec3 scaleColor(float shown) {
   float t = 5.0 * clamp((shown - range.x) / max(range.y - range.x, 1e-9), 0.0, 1.0);
@@ -63,7 +59,12 @@ float grains(float size) {
 }
 
 void main() {
-  vec3 up = normalize(normal);
+  place = place_and_depth.xyz;
+  float depth = place_and_depth.w;
+  float value = normal_value_openness.z;
+  float openness = normal_value_openness.w;
+  vec2 tilt = normal_value_openness.xy;
+  vec3 up = normalize(vec3(tilt, sqrt(max(1.0 - dot(tilt, tilt), 0.0))));
   vec3 sand = sand_color.rgb;
   // Only the cut along the map's sides stands upright; a scale of colours says nothing there.
   if (color_by > 0.5 && abs(up.z) > 1e-4) {
@@ -77,7 +78,7 @@ void main() {
   }
   // The shore is as sharp as the screen, whatever the cells are.
   float is_sand = clamp((depth - shore) / max(fwidth(depth), 1e-9) + 0.5, 0.0, 1.0);
-  vec3 color = mix(bed_color.rgb, sand, is_sand);
+  vec3 color = mix(bed_color.rgb, sand, is_sand * show_sand);
 
   // A low sun in the north-west, and a sky that reaches less far down into ruts.
   float sun = max(dot(up, normalize(vec3(-0.55, 0.60, 0.62))), 0.0);

@@ -55,7 +55,7 @@ TEST(SandVertices, TrianglesCoverTheMapOnceAndFaceUpwards) {
   for (int trial = 0; trial < 20; ++trial) {
     const HeightField map = randomMap(random);
     const std::vector<SandVertex> vertices = groundVertices(map, all(map), {});
-    for (const std::uint32_t stride : {1u, 2u, 8u}) {
+    for (const std::uint32_t stride : {1u, 2u, 3u, 8u}) {
       const std::vector<std::uint32_t> corners = gridTriangles(map.columns, map.rows, stride);
       double area = 0.0;
       for (std::size_t k = 0; k < corners.size(); k += 3) {

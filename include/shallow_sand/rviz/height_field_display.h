@@ -83,6 +83,7 @@ class HeightFieldDisplay : public rviz::Display {
   rviz::FloatProperty* high_;
   rviz::FloatProperty* contours_;
   rviz::FloatProperty* alpha_;
+  rviz::BoolProperty* show_sand_;
   rviz::BoolProperty* sides_;
   rviz::IntProperty* most_triangles_;
 

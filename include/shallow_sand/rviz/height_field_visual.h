@@ -38,7 +38,7 @@ class HeightFieldVisual {
 
   /// Of the map's frame, in the scene's.
   void setPose(const Ogre::Vector3& position, const Ogre::Quaternion& orientation);
-  /// More triangles are not drawn: only every second, fourth ... cell then.
+  /// Not many more triangles are drawn than so many: only every second, third ... cell then.
   void setMostTriangles(const HeightField& map, std::size_t most);
   void showSides(bool shown) { sides_node_->setVisible(shown); }
   SandMaterial& material() { return material_; }

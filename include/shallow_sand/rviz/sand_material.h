@@ -31,6 +31,8 @@ class SandMaterial {
   /// Distance of contour lines in elevation [m]; 0: none.
   void setContourInterval(float interval);
   void setAlpha(float alpha);
+  /// Whether the sand is drawn, or only the bed below it.
+  void showSand(bool shown);
 
  private:
   template <class Value>
