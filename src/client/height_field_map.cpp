@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <sstream>
 
 namespace shallow_sand {
@@ -16,6 +17,9 @@ struct NamedValues {
   bool may_be_missing;
 };
 
+/// Larger numbers are no metres, and sums of them no numbers.
+bool isReasonable(double value) { return std::abs(value) <= 1e9; }
+
 /// What is wrong with lists of so many values; empty if nothing is.
 std::string problemOf(const std::vector<NamedValues>& lists, std::uint64_t cells) {
   std::ostringstream problem;
@@ -23,8 +27,8 @@ std::string problemOf(const std::vector<NamedValues>& lists, std::uint64_t cells
     if (values.empty() && may_be_missing) continue;
     if (values.size() != cells) {
       problem << name << " has " << values.size() << " values; expected " << cells << ", one a cell";
-    } else if (!std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); })) {
-      problem << name << " has values that are not finite; expected numbers";
+    } else if (!std::all_of(values.begin(), values.end(), isReasonable)) {
+      problem << name << " has values that are no numbers or above 1e9; expected numbers";
     } else {
       continue;
     }
@@ -39,11 +43,12 @@ std::uint64_t cellsOf(const Message& message) {
 }
 
 std::string problemOf(const HeightField& map) {
-  if (map.columns == 0 || map.rows == 0 || !std::isfinite(map.spacing) || !(map.spacing > 0.0f) ||
-      !std::isfinite(map.origin_x) || !std::isfinite(map.origin_y)) {
+  if (map.columns == 0 || map.rows == 0 || !isReasonable(static_cast<double>(map.spacing)) ||
+      !(map.spacing > 0.0f) || !isReasonable(map.origin_x) || !isReasonable(map.origin_y)) {
     std::ostringstream problem;
     problem << "grid of " << map.columns << " x " << map.rows << " cells of " << map.spacing << " m at ("
-            << map.origin_x << ", " << map.origin_y << "); expected positive, finite numbers";
+            << map.origin_x << ", " << map.origin_y
+            << "); expected cells of a positive length, and numbers up to 1e9";
     return problem.str();
   }
   return problemOf({{"bed", map.bed, false},
@@ -89,6 +94,29 @@ void put(const HeightFieldUpdate& update, HeightField& map) {
   put(update.load_elevation, update, map.columns, map.load_elevation);
 }
 
+/// A rectangle that holds all cells in which two maps of the same size differ in any bit; empty if they do
+/// not.
+CellRectangle difference(const HeightField& a, const HeightField& b) {
+  std::uint32_t first_column = a.columns;
+  std::uint32_t last_column = 0;
+  std::uint32_t first_row = a.rows;
+  std::uint32_t last_row = 0;
+  for (const auto values : {&HeightField::bed, &HeightField::depth, &HeightField::speed, &HeightField::load,
+                            &HeightField::load_elevation}) {
+    const std::vector<float>& here = a.*values;
+    const std::vector<float>& there = b.*values;
+    for (std::size_t cell = 0; cell < here.size(); ++cell) {
+      if (std::memcmp(&here[cell], &there[cell], sizeof(float)) == 0) continue;
+      first_column = std::min(first_column, static_cast<std::uint32_t>(cell % a.columns));
+      last_column = std::max(last_column, static_cast<std::uint32_t>(cell % a.columns));
+      first_row = std::min(first_row, static_cast<std::uint32_t>(cell / a.columns));
+      last_row = std::max(last_row, static_cast<std::uint32_t>(cell / a.columns));
+    }
+  }
+  if (first_row > last_row) return {0, 0, 0, 0};
+  return {first_column, first_row, last_column - first_column + 1, last_row - first_row + 1};
+}
+
 bool isInside(const HeightFieldUpdate& update, const HeightField& map) {
   return std::uint64_t{update.column} + update.columns <= map.columns &&
          std::uint64_t{update.row} + update.rows <= map.rows;
@@ -100,21 +128,46 @@ HeightFieldMap::Change HeightFieldMap::take(const HeightField& message) {
   Change change;
   change.refused = problemOf(message);
   if (!change.refused.empty()) return change;
-  // A map that was sent before what is known already.
-  if (field_ && field_->map == message.map && message.sequence < field_->sequence) return change;
-  field_ = message;
-  change.made_anew = true;
-  applyWaiting(change);
+  if (field_ && field_->map == message.map && message.sequence < field_->sequence) {
+    // It may have been overtaken by updates, or a recording begins anew: what comes next will tell.
+    earlier_ = message;
+    return change;
+  }
+  replace(message, change);
   return change;
 }
 
 HeightFieldMap::Change HeightFieldMap::take(const HeightFieldUpdate& message) {
   Change change;
   change.refused = problemOf(message);
-  if (!change.refused.empty()) return change;
+  if (!change.refused.empty()) {
+    missing_ = true;
+    return change;
+  }
+  const bool begins_anew = earlier_ && message.map == earlier_->map && cellsOf(message) > 0 &&
+                           message.sequence == earlier_->sequence + 1;
+  if (begins_anew) {
+    const HeightField map = *earlier_;
+    replace(map, change);
+  }
   keepWaiting(message);
   if (field_) applyWaiting(change);
   return change;
+}
+
+void HeightFieldMap::replace(const HeightField& message, Change& change) {
+  const bool is_same_map = field_ && field_->map == message.map && field_->columns == message.columns &&
+                           field_->rows == message.rows && field_->load.size() == message.load.size() &&
+                           field_->speed.size() == message.speed.size();
+  if (is_same_map) {
+    const CellRectangle cells = difference(*field_, message);
+    if (cells.columns > 0) change.cells.push_back(cells);
+  }
+  change.made_anew = !is_same_map;
+  field_ = message;
+  earlier_.reset();
+  missing_ = false;
+  applyWaiting(change);
 }
 
 void HeightFieldMap::keepWaiting(const HeightFieldUpdate& update) {
@@ -135,6 +188,7 @@ void HeightFieldMap::applyWaiting(Change& change) {
         change.cells.push_back({update.column, update.row, update.columns, update.rows});
       } else {
         change.refused = "an update of cells outside of the map; expected cells of the map";
+        missing_ = true;
       }
       field_->sequence = update.sequence;
       field_->header = update.header;

@@ -14,12 +14,12 @@ constexpr double kPatience = 0.5;
 
 HeightFieldSubscriber::HeightFieldSubscriber(const ros::NodeHandle& node, const std::string& topic,
                                              Callback changed)
-    : node_(node), topic_(topic), changed_(std::move(changed)) {
-  requests_ = node_.advertise<std_msgs::Empty>(topic_ + "_requests", 1);
-  maps_ = node_.subscribe<HeightField>(topic_, 1, [this](const HeightField::ConstPtr& map) { take(*map); });
-  // A frame of the node may be many updates.
+    : node_(node), topic_(node_.resolveName(topic)), changed_(std::move(changed)) {
+  maps_ = node_.subscribe<HeightField>(topic, 1, [this](const HeightField::ConstPtr& map) { take(*map); });
+  // Where the map was remapped to, the rest goes with it. A frame of the node may be many updates.
   updates_ = node_.subscribe<HeightFieldUpdate>(
       topic_ + "_updates", 4096, [this](const HeightFieldUpdate::ConstPtr& update) { take(*update); });
+  requests_ = node_.advertise<std_msgs::Empty>(topic_ + "_requests", 1);
   timer_ = node_.createWallTimer(ros::WallDuration(kPatience),
                                  [this](const ros::WallTimerEvent&) { askForMap(); });
 }

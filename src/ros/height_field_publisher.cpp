@@ -15,7 +15,7 @@ constexpr std::uint32_t kMostWaiting = 1024;
 constexpr double kBetweenAnswers = 0.25;
 
 /// A map takes 20 bytes a cell, and ROS drops messages of a gigabyte.
-constexpr std::size_t kMostCellsSent = 50000000;
+constexpr std::size_t kMostCellsSent = 49000000;
 
 }  // namespace
 
@@ -35,12 +35,13 @@ HeightFieldPublisher::HeightFieldPublisher(ros::NodeHandle node, const Grid& gri
     follower_.wake();
     if (difference_.hasMap()) one.publish(difference_.map());
   });
-  updates_ = node.advertise<HeightFieldUpdate>("height_field_updates", kMostWaiting,
+  // Where the map was remapped to, the rest goes with it.
+  updates_ = node.advertise<HeightFieldUpdate>(maps_.getTopic() + "_updates", kMostWaiting,
                                                [this](const ros::SingleSubscriberPublisher& one) {
                                                  if (difference_.hasMap())
                                                    one.publish(difference_.sequence());
                                                });
-  requests_ = node.subscribe<std_msgs::Empty>("height_field_requests", 1,
+  requests_ = node.subscribe<std_msgs::Empty>(maps_.getTopic() + "_requests", 1,
                                               [this](const std_msgs::EmptyConstPtr&) { answerRequest(); });
   follower_.start();
 }

@@ -9,6 +9,8 @@
 #include <chrono>
 #include <cmath>
 #include <pluginlib/class_list_macros.hpp>
+#include <thread>
+#include <utility>
 
 namespace shallow_sand {
 namespace {
@@ -53,10 +55,16 @@ int BladeTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
     tell("There is no sand under the mouse.");
     return 0;
   }
-  if (answer_.valid()) return 0;
+  if (answer_.valid()) {
+    tell("Still waiting for the blade before.");
+    return 0;
+  }
   tell("The blade is on its way.");
-  answer_ =
-      std::async(std::launch::async, call, target->display->nodeName() + "/add_body", requestAt(*target));
+  std::packaged_task<std::string()> task([service = target->display->nodeName() + "/add_body",
+                                          body = requestAt(*target)] { return call(service, body); });
+  answer_ = task.get_future();
+  // rviz may end, or this tool, while a node that hangs does not answer.
+  std::thread(std::move(task)).detach();
   return Render;
 }
 

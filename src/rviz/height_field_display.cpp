@@ -105,7 +105,7 @@ HeightFieldDisplay::~HeightFieldDisplay() = default;
 void HeightFieldDisplay::onInitialize() {
   try {
     visual_ = std::make_unique<HeightFieldVisual>(scene_manager_, scene_node_);
-  } catch (const std::runtime_error& error) {
+  } catch (const std::exception& error) {
     setStatus(rviz::StatusProperty::Error, "Graphics", error.what());
     return;
   }
@@ -120,7 +120,7 @@ void HeightFieldDisplay::setTopic(const QString& topic, const QString& /*datatyp
 }
 
 void HeightFieldDisplay::onEnable() { subscribe(); }
-void HeightFieldDisplay::onDisable() { subscriber_.reset(); }
+void HeightFieldDisplay::onDisable() { unsubscribe(); }
 void HeightFieldDisplay::fixedFrameChanged() { place(); }
 
 void HeightFieldDisplay::reset() {
@@ -129,8 +129,14 @@ void HeightFieldDisplay::reset() {
   subscribe();
 }
 
-void HeightFieldDisplay::subscribe() {
+void HeightFieldDisplay::unsubscribe() {
   subscriber_.reset();
+  if (visual_) visual_->clear();
+  deleteStatus("Updates");
+}
+
+void HeightFieldDisplay::subscribe() {
+  unsubscribe();
   if (!isEnabled() || !visual_) return;
   if (topic_->getTopicStd().empty()) {
     setStatus(rviz::StatusProperty::Warn, "Topic",
@@ -187,6 +193,8 @@ void HeightFieldDisplay::tellPace(float wall_dt) {
               QString("%1 a second; what they show is %2 s old")
                   .arg(static_cast<double>(shown_since_told_) / static_cast<double>(told_), 0, 'f', 1)
                   .arg(age_since_told_ / shown_since_told_, 0, 'f', 2));
+  } else {
+    deleteStatus("Updates");
   }
   told_ = 0.0f;
   shown_since_told_ = 0;

@@ -17,16 +17,20 @@ HeightFieldVisual::HeightFieldVisual(Ogre::SceneManager* scene, Ogre::SceneNode*
       sides_node_(corner_node_->createChildSceneNode()) {}
 
 HeightFieldVisual::~HeightFieldVisual() {
-  patches_.clear();
-  for (std::unique_ptr<SandPatch>& side : sides_) side.reset();
+  clear();
   for (Ogre::SceneNode* node : {sides_node_, corner_node_, frame_node_}) scene_->destroySceneNode(node);
 }
 
-void HeightFieldVisual::reset(const HeightField& map) {
-  grid_ = PatchGrid(map);
+void HeightFieldVisual::clear() {
   patches_.clear();
   triangles_.clear();
   touched_.clear();
+  for (std::unique_ptr<SandPatch>& side : sides_) side.reset();
+}
+
+void HeightFieldVisual::reset(const HeightField& map) {
+  clear();
+  grid_ = PatchGrid(map);
   corner_node_->setPosition(static_cast<Ogre::Real>(map.origin_x), static_cast<Ogre::Real>(map.origin_y),
                             0.0f);
   material_.setShore(0.1f * map.spacing);
@@ -81,7 +85,7 @@ void HeightFieldVisual::writeSides(const HeightField& map) {
 
 const TriangleBuffer& HeightFieldVisual::trianglesOf(std::uint32_t columns, std::uint32_t rows) {
   TriangleBuffer& buffer = triangles_[{columns, rows}];
-  if (!buffer) buffer = makeTriangleBuffer(gridTriangles(columns, rows, stride_));
+  if (buffer.get() == nullptr) buffer = makeTriangleBuffer(gridTriangles(columns, rows, stride_));
   return buffer;
 }
 

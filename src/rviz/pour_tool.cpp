@@ -19,7 +19,7 @@ constexpr float kPeriod = 0.05f;  // of messages while a button is held down [s]
 }  // namespace
 
 PourTool::PourTool() : rviz::Tool() {
-  shortcut_key_ = 'p';
+  shortcut_key_ = 'd';
   radius_ =
       new rviz::FloatProperty("Radius", 0.1f, "Of the disc on which sand falls [m].", getPropertyContainer());
   radius_->setMin(0.001f);
@@ -49,9 +49,7 @@ void PourTool::deactivate() {
 }
 
 int PourTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
-  if (event.leftDown()) direction_ = 1.0f;
-  if (event.rightDown()) direction_ = -1.0f;
-  if (event.leftUp() || event.rightUp()) direction_ = 0.0f;
+  direction_ = event.left() ? 1.0f : event.right() ? -1.0f : 0.0f;
   point(event);
   const bool moves_camera = event.middle() || event.wheel_delta != 0;
   if (moves_camera && event.panel->getViewController() != nullptr)
@@ -75,7 +73,7 @@ void PourTool::point(const rviz::ViewportMouseEvent& event) {
 }
 
 void PourTool::update(float wall_dt, float /*ros_dt*/) {
-  if (!target_ || direction_ == 0.0f) {
+  if (!target_ || target_->display.isNull() || direction_ == 0.0f) {
     waited_ = 0.0f;
     return;
   }

@@ -59,11 +59,13 @@ std::optional<float> meetSand(const HeightField& map, const Ogre::Ray& ray) {
   };
   // Half a cell on the ground a step, no more than half a cell in all where the ray is steep.
   const float step = 0.5f * map.spacing / std::max(speed, 0.25f * length);
-  const float longest = near_distance + (box.getMaximum() - box.getMinimum()).length() / length;
-  float before = std::max(near_distance, 0.0f);
-  if (above(before) < 0.0f) return std::nullopt;  // comes from below
-  while (before < longest) {
-    const float after = before + step;
+  // However large and far away, a map is crossed in so many.
+  const int most_steps = 8 * static_cast<int>(map.columns + map.rows);
+  const float begin = std::max(near_distance, 0.0f);
+  if (above(begin) < 0.0f) return std::nullopt;  // comes from below
+  float before = begin;
+  for (int k = 1; k <= most_steps; ++k) {
+    const float after = begin + static_cast<float>(k) * step;
     if (above(after) < 0.0f) {
       float outside = before;
       float inside = after;

@@ -38,7 +38,8 @@ std::optional<SandUnderMouse> sandUnderMouse(rviz::DisplayContext& context,
     const auto distance = [&](const SandPlace& other) {
       return ray.getOrigin().squaredDistance(other.in_scene);
     };
-    if (!found || distance(*place) < distance(found->place)) found = {&display, *place, ray.getDirection()};
+    if (!found || distance(*place) < distance(found->place))
+      found = {&display, *place, display.inMap(ray.getDirection())};
   });
   return found;
 }

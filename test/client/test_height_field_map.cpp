@@ -103,5 +103,40 @@ TEST(HeightFieldMap, UpdatesBeforeTheMapAreKeptAndOldOnesAreNot) {
   EXPECT_FALSE(follower.needsMap());
 }
 
+TEST(HeightFieldMap, FollowsARecordingThatBeginsAnew) {
+  std::mt19937 random = seededGenerator();
+  const Sent sent = send(random);
+  HeightFieldMap follower;
+  follower.take(sent.map);
+  for (int pass = 0; pass < 3; ++pass) {
+    follower.take(sent.map);
+    follower.take(sent.update);
+    EXPECT_EQ(follower.field()->sequence, sent.update.sequence);
+    EXPECT_FALSE(follower.needsMap());
+  }
+  HeightFieldUpdate lost = sent.update;
+  follower.take(sent.map);
+  lost.depth.pop_back();
+  EXPECT_NE(follower.take(lost).refused, "");
+  EXPECT_TRUE(follower.needsMap());
+}
+
+TEST(HeightFieldMap, AMapThatIsAskedForChangesOnlyWhatWasMissed) {
+  std::mt19937 random = seededGenerator();
+  const Sent sent = send(random);
+  HeightFieldMap follower;
+  follower.take(sent.map);
+  HeightField healed = sent.map;
+  healed.sequence += 5;
+  const std::size_t cell = random() % healed.depth.size();
+  healed.depth[cell] += 1.0f;
+  const HeightFieldMap::Change change = follower.take(healed);
+  EXPECT_FALSE(change.made_anew);
+  ASSERT_EQ(change.cells.size(), 1u);
+  EXPECT_EQ(std::size_t{change.cells[0].row} * healed.columns + change.cells[0].column, cell);
+  EXPECT_EQ(change.cells[0].columns * change.cells[0].rows, 1u);
+  EXPECT_EQ(follower.field()->depth, healed.depth);
+}
+
 }  // namespace
 }  // namespace shallow_sand

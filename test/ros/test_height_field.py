@@ -55,6 +55,7 @@ class Follower:
     def wait_until_same(self, node, limit=15.0):
         """As the node has it; returns that."""
         deadline = time.monotonic() + limit
+        truth, copies = None, []
         while time.monotonic() < deadline:
             try:
                 truth, copies = whole(node), self.copies()

@@ -145,7 +145,11 @@ TEST(Display, ColorsTellWhatIsAskedFor) {
   int darker = 0;
   for (int y = 0; y < plain.height(); ++y) {
     for (int x = 0; x < plain.width(); ++x)
-      darker += qGray(contours.pixel(x, y)) < 0.8 * qGray(plain.pixel(x, y)) ? 1 : 0;
+      // The machine moves: what is sand in both pictures was not hidden by it.
+      darker += isSand(plain.pixel(x, y)) && isSand(contours.pixel(x, y)) &&
+                        qGray(contours.pixel(x, y)) < 0.8 * qGray(plain.pixel(x, y))
+                    ? 1
+                    : 0;
   }
   EXPECT_GT(darker, 300);
   display->subProp("Contour Interval")->setValue(0.0);

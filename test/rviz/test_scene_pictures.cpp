@@ -36,6 +36,7 @@ class Launch {
                                  "rviz:=false"});
   }
   ~Launch() {
+    if (process_.state() == QProcess::NotRunning) return;
     ::kill(static_cast<pid_t>(process_.processId()), SIGINT);
     if (!process_.waitForFinished(20000)) process_.kill();
   }

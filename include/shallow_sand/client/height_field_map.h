@@ -37,15 +37,18 @@ class HeightFieldMap {
 
   /// The sand with all updates in it; its header is that of the newest. Null until a map has come.
   const HeightField* field() const { return field_ ? &*field_ : nullptr; }
-  /// Updates wait for a map. If none is on its way, one has to be asked for.
-  bool needsMap() const { return !waiting_.empty(); }
+  /// Updates wait for a map, or one was refused. If none is on its way, one has to be asked for.
+  bool needsMap() const { return missing_ || !waiting_.empty(); }
 
  private:
+  void replace(const HeightField& message, Change& change);
   void applyWaiting(Change& change);
   void keepWaiting(const HeightFieldUpdate& update);
 
   std::optional<HeightField> field_;
+  std::optional<HeightField> earlier_;  // a map that came when updates after it were known already
   std::deque<HeightFieldUpdate> waiting_;
+  bool missing_ = false;  // an update was refused
 };
 
 }  // namespace shallow_sand

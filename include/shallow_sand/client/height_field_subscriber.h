@@ -14,7 +14,8 @@ namespace shallow_sand {
 
 /// Follows the sand of a node: subscribes to its height field and the updates of that, and asks for the whole
 /// map when none comes by itself (another subscriber of this process has had it) or updates were lost.
-/// Callbacks come from the queue of the node handle.
+/// Callbacks come from the queue of the node handle; one thread may serve that, and none of them may destroy
+/// this.
 class HeightFieldSubscriber {
  public:
   using Callback = std::function<void(const HeightField&, const HeightFieldMap::Change&)>;
@@ -27,7 +28,7 @@ class HeightFieldSubscriber {
   HeightFieldSubscriber& operator=(const HeightFieldSubscriber&) = delete;
 
   const HeightField* field() const { return map_.field(); }
-  std::string topic() const { return maps_.getTopic(); }
+  const std::string& topic() const { return topic_; }
 
  private:
   template <class Message>

@@ -49,6 +49,8 @@ class HeightFieldDisplay : public rviz::Display {
   std::string nodeName() const;
   /// tf frame of the sand; empty as long as there is no map.
   std::string mapFrame() const;
+  /// A direction of the scene, in the map's frame.
+  Ogre::Vector3 inMap(const Ogre::Vector3& direction) const { return orientation_.Inverse() * direction; }
   /// Where a ray of the scene meets the sand first.
   std::optional<SandPlace> meet(const Ogre::Ray& ray) const;
 
@@ -66,6 +68,7 @@ class HeightFieldDisplay : public rviz::Display {
   void changeShape();
 
  private:
+  void unsubscribe();
   void take(const HeightField& map, const HeightFieldMap::Change& change);
   void startAnew(const HeightField& map);
   /// Low and high end of the colours' scale, from the map if so wished.

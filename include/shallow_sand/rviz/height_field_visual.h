@@ -28,6 +28,8 @@ class HeightFieldVisual {
   HeightFieldVisual(const HeightFieldVisual&) = delete;
   HeightFieldVisual& operator=(const HeightFieldVisual&) = delete;
 
+  /// Draws nothing until there is a map again.
+  void clear();
   /// Starts anew with a map, of any size.
   void reset(const HeightField& map);
   /// These cells have changed.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <QPointer>
 #include <optional>
 
 #include "shallow_sand/rviz/height_field_display.h"
@@ -13,9 +14,9 @@ namespace shallow_sand {
 
 /// What a tool points at.
 struct SandUnderMouse {
-  HeightFieldDisplay* display;  ///< whose sand is nearest to the eye there
+  QPointer<HeightFieldDisplay> display;  ///< whose sand is nearest to the eye there
   SandPlace place;
-  Ogre::Vector3 direction;  ///< of the view there, in the scene
+  Ogre::Vector3 direction;  ///< of the view there, in the map's frame
 };
 
 /// Nothing if no sand that is shown lies under the mouse.
