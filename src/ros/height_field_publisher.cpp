@@ -38,6 +38,7 @@ HeightFieldPublisher::HeightFieldPublisher(ros::NodeHandle node, const Grid& gri
   // Where the map was remapped to, the rest goes with it.
   updates_ = node.advertise<HeightFieldUpdate>(maps_.getTopic() + "_updates", kMostWaiting,
                                                [this](const ros::SingleSubscriberPublisher& one) {
+                                                 follower_.wake();
                                                  if (difference_.hasMap())
                                                    one.publish(difference_.sequence());
                                                });

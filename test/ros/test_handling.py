@@ -193,7 +193,7 @@ class Handling(unittest.TestCase):
                 x = 0.2 + 0.2 * (rospy.get_time() - start)
                 drag(x)
             field = rospy.wait_for_message(node.name + "/height_field", HeightField, timeout=20.0)
-            fastest = max(max(update.speed, default=0.0) for update in fields)
+            fastest = max(max(update.speed, default=0.0) for update in list(fields))
             self.assertGreater(fastest, 0.1)  # the sand goes as fast as the plate, not as fast as a jump would throw it
             self.assertLess(fastest, 0.6)
             seen.wait(lambda array: any(abs(m.pose.position.x - x) < 1e-9 for m in array.markers), "the plate is there")
