@@ -33,9 +33,7 @@ struct Fields {
   float allDepth(std::size_t cell) const { return load.empty() ? depth[cell] : depth[cell] + load[cell]; }
   static constexpr float kDust = 0.001f;  ///< sand of a load that one does not see [m]
   /// Whether so much lies on a body that one sees it: grains that hang on to a link are no surface of sand.
-  bool hasLoad(std::size_t cell) const {
-    return !load.empty() && load[cell] >= kDust;
-  }
+  bool hasLoad(std::size_t cell) const { return !load.empty() && load[cell] >= kDust; }
 };
 
 /// Material that varies over the map: each list is empty (then Material holds everywhere) or has one value a
