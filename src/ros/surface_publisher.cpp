@@ -31,9 +31,9 @@ SurfacePublisher::SurfacePublisher(ros::NodeHandle node, const Grid& grid, const
 void SurfacePublisher::take(const FieldsChange& change, const ros::Time& stamp) {
   const bool is_first = fields_.depth.empty();
   apply(change, grid_, fields_);
-  // Made only when somebody looks, or once, so that whoever comes later sees sand at once.
-  if (grid_.cells() <= kMostCellsShown && (points_.getNumSubscribers() > 0 || is_first))
-    points_.publish(toPointCloud(grid_, fields_, frame_, stamp));
+  // Latched, so whoever comes later must find the sand as it is.
+  if (grid_.cells() <= kMostCellsShown) points_.publish(toPointCloud(grid_, fields_, frame_, stamp));
+  // Dear: made only when somebody looks, or once, so that whoever comes later sees sand at once.
   if (mesh_.getNumSubscribers() > 0 || is_first)
     mesh_.publish(toMarker(grid_, fields_, most_mesh_cells_, frame_, stamp));
 }
