@@ -5,7 +5,7 @@ namespace shallow_sand {
 std::vector<Grain> startingGrains(const GrainGrid& grains, const Grid& grid, const Fields& fields) {
   std::vector<Grain> starting;
   starting.reserve(static_cast<std::size_t>(grains.cells()));
-  const float least = kLeastDepthOfGrains * grid.spacing;
+  const float least = bareDepth(grid);
   for (int d = 0; d < grains.layers; ++d) {
     for (int t = 0; t < grains.rows; ++t) {
       for (int s = 0; s < grains.columns; ++s) {

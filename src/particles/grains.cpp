@@ -8,9 +8,6 @@ namespace shallow_sand {
 
 namespace {
 
-/// How high a surface may rise from one cell to the next, in cells. What is steeper is no slope of sand.
-constexpr float kSteepest = 3.0f;
-
 /// The sand that one sees from above, between centres of cells (Eq. 27).
 class SeenSand {
  public:
@@ -19,7 +16,7 @@ class SeenSand {
     for (std::size_t k = 0; k < grid.cells(); ++k) {
       surface_[k] = fields.surface(k);
       depth_[k] = fields.hasLoad(k) ? fields.load[k] : fields.depth[k];
-      hidden_.push_back(fields.allDepth(k) < kLeastDepthOfGrains * grid.spacing);
+      hidden_.push_back(fields.allDepth(k) < bareDepth(grid));
     }
   }
 

@@ -29,6 +29,17 @@ std_msgs::ColorRGBA toColor(const Eigen::Vector3f& colour) {
   return color;
 }
 
+constexpr int kFloat = sensor_msgs::PointField::FLOAT32;
+
+/// Without fields and points.
+sensor_msgs::PointCloud2 cloudIn(const std::string& frame, const ros::Time& stamp) {
+  sensor_msgs::PointCloud2 cloud;
+  cloud.header.frame_id = frame;
+  cloud.header.stamp = stamp;
+  cloud.is_dense = true;
+  return cloud;
+}
+
 /// 0x00rrggbb in the bits of a float.
 float packed(const Eigen::Vector3f& colour) {
   const Eigen::Array<std::uint32_t, 3, 1> bytes = (255.0f * colour.array() + 0.5f).cast<std::uint32_t>();
@@ -42,12 +53,8 @@ float packed(const Eigen::Vector3f& colour) {
 
 sensor_msgs::PointCloud2 toPointCloud(const Grid& grid, const Fields& fields, const std::string& frame,
                                       const ros::Time& stamp) {
-  sensor_msgs::PointCloud2 cloud;
-  cloud.header.frame_id = frame;
-  cloud.header.stamp = stamp;
-  cloud.is_dense = true;
+  sensor_msgs::PointCloud2 cloud = cloudIn(frame, stamp);
   sensor_msgs::PointCloud2Modifier modifier(cloud);
-  constexpr int kFloat = sensor_msgs::PointField::FLOAT32;
   modifier.setPointCloud2Fields(5, "x", 1, kFloat, "y", 1, kFloat, "z", 1, kFloat, "intensity", 1, kFloat,
                                 "rgb", 1, kFloat);
   modifier.resize(grid.cells());
@@ -71,12 +78,8 @@ sensor_msgs::PointCloud2 toPointCloud(const Grid& grid, const Fields& fields, co
 
 sensor_msgs::PointCloud2 toPointCloud(const Grid& grid, const Fields& fields, const GrainCloud& grains,
                                       const std::string& frame, const ros::Time& stamp) {
-  sensor_msgs::PointCloud2 cloud;
-  cloud.header.frame_id = frame;
-  cloud.header.stamp = stamp;
-  cloud.is_dense = true;
+  sensor_msgs::PointCloud2 cloud = cloudIn(frame, stamp);
   sensor_msgs::PointCloud2Modifier modifier(cloud);
-  constexpr int kFloat = sensor_msgs::PointField::FLOAT32;
   modifier.setPointCloud2Fields(4, "x", 1, kFloat, "y", 1, kFloat, "z", 1, kFloat, "rgb", 1, kFloat);
   modifier.resize(grains.points.size());
   const std::vector<float> light = visibleLight(grid, fields);
@@ -113,14 +116,12 @@ visualization_msgs::Marker toMarker(const Grid& grid, const Fields& fields, std:
     colors[vertex] = toColor(mesh.colour(vertex));
   marker.points.reserve(3 * mesh.triangles());
   marker.colors.reserve(3 * mesh.triangles());
-  for (const auto* triangles : {&mesh.sand, &mesh.bed, &mesh.loads}) {
-    for (const SurfaceMesh::Triangle& triangle : *triangles) {
-      for (const std::uint32_t corner : triangle) {
-        marker.points.push_back(toPoint(mesh.positions[corner]));
-        marker.colors.push_back(colors[corner]);
-      }
+  mesh.forEachTriangle([&](const SurfaceMesh::Triangle& triangle) {
+    for (const std::uint32_t corner : triangle) {
+      marker.points.push_back(toPoint(mesh.positions[corner]));
+      marker.colors.push_back(colors[corner]);
     }
-  }
+  });
   return marker;
 }
 

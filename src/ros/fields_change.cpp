@@ -20,6 +20,14 @@ std::size_t cellsOf(const std::vector<Window>& windows) {
 
 }  // namespace
 
+void appendCells(const std::vector<float>& from, const Window& window, const Grid& grid,
+                 std::vector<float>& to) {
+  for (int j = window.row_begin; j < window.row_end; ++j) {
+    const auto row = from.begin() + static_cast<std::ptrdiff_t>(grid.index(window.column_begin, j));
+    to.insert(to.end(), row, row + window.columns());
+  }
+}
+
 bool isWhole(const FieldsChange& change, const Grid& grid) { return cellsOf(change.windows) == grid.cells(); }
 
 FieldsChange changeOf(const Fields& fields, std::vector<Window> windows, const Grid& grid,
@@ -37,12 +45,7 @@ FieldsChange changeOf(const Fields& fields, std::vector<Window> windows, const G
     to.clear();
     if (from.empty()) continue;
     to.reserve(cells);
-    for (const Window& window : change.windows) {
-      for (int j = window.row_begin; j < window.row_end; ++j) {
-        const auto row = from.begin() + static_cast<std::ptrdiff_t>(grid.index(window.column_begin, j));
-        to.insert(to.end(), row, row + window.columns());
-      }
-    }
+    for (const Window& window : change.windows) appendCells(from, window, grid, to);
   }
   return change;
 }

@@ -147,10 +147,7 @@ HeightFieldUpdate HeightFieldDifference::updateOf(const Window& cells) {
   const auto copy = [&](const std::vector<float>& from, std::vector<float>& to) {
     if (from.empty()) return;
     to.reserve(cells.cells());
-    for (int j = cells.row_begin; j < cells.row_end; ++j) {
-      const auto row = from.begin() + static_cast<std::ptrdiff_t>(grid_.index(cells.column_begin, j));
-      to.insert(to.end(), row, row + cells.columns());
-    }
+    appendCells(from, cells, grid_, to);
   };
   copy(map_.depth, update.depth);
   copy(map_.speed, update.speed);

@@ -44,22 +44,20 @@ void BladeTool::onInitialize() {
   setCursor(rviz::makeIconCursor("package://rviz/icons/crosshair.svg"));
 }
 
-void BladeTool::activate() { tell("Click on the sand to put a blade there."); }
-
-void BladeTool::tell(const QString& text) { setStatus(text); }
+void BladeTool::activate() { setStatus("Click on the sand to put a blade there."); }
 
 int BladeTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
   if (!event.leftDown()) return 0;
   const std::optional<SandUnderMouse> target = sandUnderMouse(*context_, event);
   if (!target) {
-    tell("There is no sand under the mouse.");
+    setStatus("There is no sand under the mouse.");
     return 0;
   }
   if (answer_.valid()) {
-    tell("Still waiting for the blade before.");
+    setStatus("Still waiting for the blade before.");
     return 0;
   }
-  tell("The blade is on its way.");
+  setStatus("The blade is on its way.");
   std::packaged_task<std::string()> task([service = target->display->nodeName() + "/add_body",
                                           body = requestAt(*target)] { return call(service, body); });
   answer_ = task.get_future();
@@ -94,7 +92,7 @@ AddBody BladeTool::requestAt(const SandUnderMouse& target) {
 
 void BladeTool::update(float /*wall_dt*/, float /*ros_dt*/) {
   if (!answer_.valid() || answer_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-  tell(QString::fromStdString(answer_.get()));
+  setStatus(QString::fromStdString(answer_.get()));
 }
 
 }  // namespace shallow_sand

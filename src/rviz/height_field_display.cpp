@@ -72,11 +72,11 @@ HeightFieldDisplay::HeightFieldDisplay() {
   auto_range_ =
       new rviz::BoolProperty("Autocompute Range", true,
                              "Whether the scale of colours goes from the map's lowest value to its highest.",
-                             this, SLOT(changeColorBy()));
+                             this, SLOT(changeRange()));
   low_ = new rviz::FloatProperty("Min Value", 0.0f, "First colour of the scale [m, m/s or degrees].", this,
-                                 SLOT(changeColorBy()));
+                                 SLOT(changeRange()));
   high_ = new rviz::FloatProperty("Max Value", 1.0f, "Last colour of the scale [m, m/s or degrees].", this,
-                                  SLOT(changeColorBy()));
+                                  SLOT(changeRange()));
   contours_ = new rviz::FloatProperty(
       "Contour Interval", 0.0f,
       "Distance of contour lines in elevation [m], the first half of it above 0; 0: none.", this,
@@ -262,10 +262,9 @@ void HeightFieldDisplay::changeColors() {
 void HeightFieldDisplay::changeColorBy() {
   if (!visual_) return;
   const ColorBy what = colorBy(*color_by_);
-  low_->setHidden(auto_range_->getBool());
-  high_->setHidden(auto_range_->getBool());
   auto_range_->setHidden(what == ColorBy::sand);
   visual_->material().setColorBy(what, low_->getFloat(), high_->getFloat());
+  changeRange();
   const HeightField* map = subscriber_ ? subscriber_->field() : nullptr;
   if (map == nullptr) return;
   if (what == ColorBy::speed && map->speed.empty()) {
@@ -274,6 +273,11 @@ void HeightFieldDisplay::changeColorBy() {
     deleteStatus("Color By");
   }
   visual_->touchAll(*map);
+}
+
+void HeightFieldDisplay::changeRange() {
+  low_->setHidden(auto_range_->getBool());
+  high_->setHidden(auto_range_->getBool());
   changed_ = true;
 }
 

@@ -57,18 +57,12 @@ class BinaryFile {
   std::ofstream file_;
 };
 
-template <class Function>
-void forEachTriangle(const SurfaceMesh& mesh, const Function& function) {
-  for (const auto* triangles : {&mesh.sand, &mesh.bed, &mesh.loads})
-    std::for_each(triangles->begin(), triangles->end(), function);
-}
-
 void writeStl(const SurfaceMesh& mesh, BinaryFile& file) {
   std::string header = "shallow_sand";
   header.resize(80, ' ');
   file.text(header);
   file.integer(static_cast<std::uint32_t>(mesh.triangles()));
-  forEachTriangle(mesh, [&](const SurfaceMesh::Triangle& triangle) {
+  mesh.forEachTriangle([&](const SurfaceMesh::Triangle& triangle) {
     const Eigen::Vector3d& a = mesh.positions[triangle[0]];
     const Eigen::Vector3d& b = mesh.positions[triangle[1]];
     const Eigen::Vector3d& c = mesh.positions[triangle[2]];
@@ -96,7 +90,7 @@ void writePly(const SurfaceMesh& mesh, BinaryFile& file) {
     file.vector(mesh.positions[vertex].cast<float>());
     file.vector(mesh.normals[vertex]);
   }
-  forEachTriangle(mesh, [&](const SurfaceMesh::Triangle& triangle) {
+  mesh.forEachTriangle([&](const SurfaceMesh::Triangle& triangle) {
     file.byte(3);
     for (const std::uint32_t corner : triangle) file.integer(corner);
   });

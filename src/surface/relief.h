@@ -13,10 +13,6 @@
 
 namespace shallow_sand {
 
-/// How high what one sees may rise from one cell to the next, in cells. What is steeper is no slope of sand
-/// but the rim of a load.
-constexpr double kSteepest = 3.0;
-
 inline Eigen::Vector3f normalOf(const Eigen::Vector2d& gradient) {
   const Eigen::Vector2f slope = gradient.cast<float>();
   return Eigen::Vector3f(-slope.x(), -slope.y(), 1.0f).normalized();
@@ -67,7 +63,7 @@ class Relief {
         .first;
   }
   bool isStep(double low, double high) const {
-    return std::abs(high - low) > kSteepest * lattice_.width.front();
+    return std::abs(high - low) > static_cast<double>(kSteepest) * lattice_.width.front();
   }
   /// Of the ground's sand or its bare bed, whichever there is.
   Eigen::Vector3f groundNormal(std::size_t i, std::size_t j) const {

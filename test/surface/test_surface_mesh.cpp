@@ -134,13 +134,17 @@ TEST(SurfaceMesh, RandomGroundIsOneSheetWithoutFolds) {
   }
 }
 
-TEST(SurfaceMesh, PassesThroughTheMiddleOfEachCell) {
-  std::mt19937 random = seededGenerator();
+std::pair<Grid, Fields> randomGround(std::mt19937& random) {
   const RandomSand sand = randomSand(random, 20, 15);
-  const Grid grid = sand.parameters.grid.grid();
   Fields fields;
   fields.bed = sand.bed;
   fields.depth = sand.depth;
+  return {sand.parameters.grid.grid(), fields};
+}
+
+TEST(SurfaceMesh, PassesThroughTheMiddleOfEachCell) {
+  std::mt19937 random = seededGenerator();
+  const auto [grid, fields] = randomGround(random);
   const SurfaceMesh mesh = surfaceMesh(grid, fields);
   for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i) {
@@ -396,11 +400,7 @@ TEST(SurfaceMesh, ColoursTellMaterialsAndSlopes) {
   const Eigen::Vector3f bed = surfaceColour(SurfaceMaterial::bed, Eigen::Vector3f::UnitZ());
   EXPECT_LT(bed.maxCoeff() - bed.minCoeff(), 0.05f);
   std::mt19937 random = seededGenerator();
-  const RandomSand sand = randomSand(random, 20, 15);
-  const Grid grid = sand.parameters.grid.grid();
-  Fields fields;
-  fields.bed = sand.bed;
-  fields.depth = sand.depth;
+  const auto [grid, fields] = randomGround(random);
   const SurfaceMesh mesh = surfaceMesh(grid, fields);
   const std::vector<Eigen::Vector3f> visible = visibleColours(grid, fields);
   ASSERT_EQ(visible.size(), grid.cells());

@@ -28,7 +28,6 @@ class HeightFieldSubscriber {
   HeightFieldSubscriber& operator=(const HeightFieldSubscriber&) = delete;
 
   const HeightField* field() const { return map_.field(); }
-  const std::string& topic() const { return topic_; }
 
  private:
   template <class Message>

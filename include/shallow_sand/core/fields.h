@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "shallow_sand/core/grid.h"
+
 namespace shallow_sand {
 
 /// The state of the sand, on the host; one float a cell, row-major, row 0 at the smallest y. Bed, depth and
@@ -35,6 +37,13 @@ struct Fields {
   /// Whether so much lies on a body that one sees it: grains that hang on to a link are no surface of sand.
   bool hasLoad(std::size_t cell) const { return !load.empty() && load[cell] >= kDust; }
 };
+
+/// Sand thinner than a tenth of a cell counts as bare bed (sections 6.3 and 7.2). [m]
+inline float bareDepth(const Grid& grid) { return 0.1f * grid.spacing; }
+
+/// How high what one sees may rise from one cell to the next, in cells. What is steeper is no slope of sand
+/// but the rim of a load.
+constexpr float kSteepest = 3.0f;
 
 /// Material that varies over the map: each list is empty (then Material holds everywhere) or has one value a
 /// cell, row-major, row 0 at the smallest y, within the bounds of Material's members of these names.

@@ -85,9 +85,6 @@ SHALLOW_SAND_HOST_DEVICE inline float depthOf(const Grain& grain, int layer, flo
   return (static_cast<float>(layer) + unitFrom(bitsOf(grain))) * spacing;
 }
 
-/// Depth of sand below which grains are not shown (section 7.2), as a part of ΔL.
-constexpr float kLeastDepthOfGrains = 0.1f;
-
 /// The grains of sand that has not moved yet.
 std::vector<Grain> startingGrains(const GrainGrid& grains, const Grid& grid, const Fields& fields);
 

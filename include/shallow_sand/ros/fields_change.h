@@ -15,6 +15,10 @@ struct FieldsChange {
   Fields values;
 };
 
+/// Adds the values of a window's cells to a list, row by row. @param from one value a cell of the grid
+void appendCells(const std::vector<float>& from, const Window& window, const Grid& grid,
+                 std::vector<float>& to);
+
 /// @param windows that do not overlap
 /// @param reused a change that nobody needs any more: memory that is new is dear
 FieldsChange changeOf(const Fields& fields, std::vector<Window> windows, const Grid& grid,

@@ -23,7 +23,7 @@ struct RobotParameters {
 /// All private parameters of sand_node.
 struct NodeParameters {
   Scene scene;                          ///< from the keys of a scene file
-  std::vector<RobotParameters> robots;  ///< at least one
+  std::vector<RobotParameters> robots;  ///< none if ~robot_description is empty
   double frame_rate = 50.0;             ///< at which poses are taken and the sand runs on [Hz]
   double publish_rate = 5.0;            ///< of ~points, ~mesh and ~bodies, of the wall clock [Hz]
   double height_field_rate = 10.0;      ///< of ~height_field_updates, of the wall clock [Hz]

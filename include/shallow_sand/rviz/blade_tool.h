@@ -34,7 +34,6 @@ class BladeTool : public rviz::Tool {
 
  private:
   AddBody requestAt(const SandUnderMouse& target);
-  void tell(const QString& text);
 
   rviz::FloatProperty* width_;
   rviz::FloatProperty* height_;

@@ -64,6 +64,7 @@ class HeightFieldDisplay : public rviz::Display {
   void subscribe();
   void changeColors();
   void changeColorBy();
+  void changeRange();
   void changeContours();
   void changeShape();
 

@@ -12,9 +12,6 @@ namespace shallow_sand {
 /// What a surface is made of.
 enum class SurfaceMaterial : std::uint8_t { bed, sand };
 
-/// Sand thinner than a tenth of a cell counts as bare bed (section 7.2). [m]
-inline float bareDepth(const Grid& grid) { return 0.1f * grid.spacing; }
-
 /// How much light falls on a surface from the north-west, 1 if it is level. Viewers light a mesh from the
 /// camera, which hides ruts; this shows them. @param normal of unit length, upward
 inline float lightOn(const Eigen::Vector3f& normal) {

@@ -31,6 +31,13 @@ struct SurfaceMesh {
   std::vector<Triangle> loads;
 
   std::size_t triangles() const { return sand.size() + bed.size() + loads.size(); }
+  /// Calls function(triangle) for all of them.
+  template <class Function>
+  void forEachTriangle(const Function& function) const {
+    for (const auto* triangles : {&sand, &bed, &loads}) {
+      for (const Triangle& triangle : *triangles) function(triangle);
+    }
+  }
   Eigen::Vector3f colour(std::size_t vertex) const {
     return surfaceColour(materials[vertex], normals[vertex]);
   }
