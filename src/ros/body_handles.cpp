@@ -1,13 +1,14 @@
 #include "shallow_sand/ros/body_handles.h"
 
 #include <ros/console.h>
-#include <ros/this_node.h>
 #include <tf2_eigen/tf2_eigen.h>
 
 #include <algorithm>
+#include <boost/make_shared.hpp>
 #include <cmath>
 
 #include "shallow_sand/ros/poses.h"
+#include "shallow_sand/ros/queued_call.h"
 
 namespace shallow_sand {
 namespace {
@@ -41,11 +42,13 @@ InteractiveMarkerControl controlWith(const visualization_msgs::Marker& look) {
 
 }  // namespace
 
-BodyHandles::BodyHandles(const std::string& sand_frame, double frame_period, SandBodies& bodies)
-    : sand_frame_(sand_frame),
+BodyHandles::BodyHandles(const ros::NodeHandle& node, const std::string& sand_frame, double frame_period,
+                         SandBodies& bodies)
+    : queue_(*node.getCallbackQueue()),
+      sand_frame_(sand_frame),
       frame_period_(frame_period),
       bodies_(bodies),
-      server_(ros::this_node::getName() + "/body_handles") {}
+      server_(node.getNamespace() + "/body_handles") {}
 
 void BodyHandles::update(const std::vector<ShownBody>& shown) {
   std::map<std::string, Handle> gone = handles_;
@@ -86,7 +89,8 @@ void BodyHandles::insert(const ShownBody& body) {
   for (std::size_t k = 0; k < marker.controls.size(); ++k) marker.controls[k].name = std::to_string(k);
   server_.insert(marker,
                  [this](const interactive_markers::InteractiveMarkerServer::FeedbackConstPtr& feedback) {
-                   take(*feedback);
+                   // The server takes its messages from the global queue, in whatever thread.
+                   queue_.addCallback(boost::make_shared<QueuedCall>([this, feedback] { take(*feedback); }));
                  });
   handles_[body.name] = Handle{body.pose, {}, false};
 }

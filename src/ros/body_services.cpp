@@ -76,12 +76,12 @@ bool answer(const std::string& request, Response& response, const Action& action
 
 }  // namespace
 
-BodyServices::BodyServices(double sand_spacing, SandBodies& bodies)
+BodyServices::BodyServices(ros::NodeHandle node, double sand_spacing, SandBodies& bodies)
     : sand_spacing_(sand_spacing), bodies_(bodies) {
-  node_.setCallbackQueue(&queue_);
-  add_ = node_.advertiseService("add_body", &BodyServices::add, this);
-  remove_ = node_.advertiseService("remove_body", &BodyServices::remove, this);
-  move_ = node_.advertiseService("move_body", &BodyServices::move, this);
+  node.setCallbackQueue(&queue_);
+  add_ = node.advertiseService("add_body", &BodyServices::add, this);
+  remove_ = node.advertiseService("remove_body", &BodyServices::remove, this);
+  move_ = node.advertiseService("move_body", &BodyServices::move, this);
   spinner_.start();
 }
 

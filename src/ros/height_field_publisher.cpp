@@ -4,6 +4,9 @@
 #include <ros/single_subscriber_publisher.h>
 #include <std_msgs/Empty.h>
 
+#include <boost/make_shared.hpp>
+#include <utility>
+
 namespace shallow_sand {
 namespace {
 
@@ -55,9 +58,10 @@ void HeightFieldPublisher::answerRequest() {
 }
 
 void HeightFieldPublisher::take(const FieldsChange& change, const ros::Time& stamp) {
-  const HeightFieldDifference::News news = difference_.take(change, stamp);
+  HeightFieldDifference::News news = difference_.take(change, stamp);
   if (news.map_is_new) maps_.publish(difference_.map());
-  for (const HeightFieldUpdate& update : news.updates) updates_.publish(update);
+  for (HeightFieldUpdate& update : news.updates)
+    updates_.publish(boost::make_shared<const HeightFieldUpdate>(std::move(update)));
 }
 
 }  // namespace shallow_sand

@@ -8,8 +8,11 @@ int main(int argument_count, char** arguments) {
   ros::init(argument_count, arguments, "sand_node");
   // ROS shuts its log down with the last handle; this one outlives the node, so that its end can be told.
   const ros::NodeHandle handle;
+  // For the clock and interactive markers; the node takes all else from a queue of its own.
+  ros::AsyncSpinner spinner(1);
+  spinner.start();
   try {
-    shallow_sand::SandNode().run();
+    shallow_sand::SandNode(handle, ros::NodeHandle("~")).run([] { return true; });
   } catch (const shallow_sand::SceneError& error) {
     ROS_FATAL_STREAM(error.what());
     return 2;

@@ -148,6 +148,7 @@ NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
   take(yaml, source, "picture", "the path of a file", parameters.picture);
   takeMeshFile(yaml, source, parameters.mesh_file);
   takeBetween(yaml, source, "frame_rate", 0.01, 1e4, "hertz", parameters.frame_rate);
+  take(yaml, source, "paused", "true or false", parameters.paused);
   takeBetween(yaml, source, "publish_rate", 0.01, 1e4, "hertz", parameters.publish_rate);
   takeBetween(yaml, source, "height_field_rate", 0.01, 1e4, "hertz", parameters.height_field_rate);
   take(yaml, source, "publish_speed", "true or false", parameters.publish_speed);

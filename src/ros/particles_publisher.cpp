@@ -26,7 +26,8 @@ void ParticlesPublisher::send(Grains grains, Fields fields, const ros::Time& sta
   const auto sand = std::make_shared<const std::pair<Grains, Fields>>(std::move(grains), std::move(fields));
   queue_.addCallback(boost::make_shared<QueuedCall>([this, sand, stamp] {
     const auto& [grains, fields] = *sand;
-    particles_.publish(toPointCloud(grid_, fields, grainCloud(grid_, fields, grains), frame_, stamp));
+    particles_.publish(boost::make_shared<const sensor_msgs::PointCloud2>(
+        toPointCloud(grid_, fields, grainCloud(grid_, fields, grains), frame_, stamp)));
     busy_ = false;
   }));
 }

@@ -47,7 +47,8 @@ SandBodies::SandBodies(const NodeParameters& parameters, const TransformReader& 
     body.number = bodies_.size();  // the simulator has them in the scene's order
     const TriangleMesh mesh = triangulate(scene_body.shape);
     for (const Eigen::Vector3d& vertex : mesh.vertices) body.box.extend(vertex);
-    for (const PoseKey& key : scene_body.motion) body.motion.append(key.time, key.pose);
+    body.of_scene = scene_body.motion;
+    for (const PoseKey& key : body.of_scene) body.motion.append(key.time, key.pose);
     body.status.name = scene_body.name;
     body.status.state = BodyStatus::PLACED;
     body.appearance = BodyAppearance{lookOf(scene_body), false};
@@ -162,6 +163,38 @@ void SandBodies::restartClock() {
   }
 }
 
+bool SandBodies::posesHaveCome(const ros::Time& time) const {
+  return std::all_of(bodies_.begin(), bodies_.end(), [&](const Body& body) {
+    return !body.following || body.status.state != BodyStatus::MOVING ||
+           transforms_.buffer().canTransform(sand_frame_, body.following->frame.name, time);
+  });
+}
+
+void SandBodies::restore(const Snapshot& snapshot) {
+  const double before = simulator_.time();
+  simulator_.restore(snapshot);
+  restartClock();
+  for (Body& body : bodies_) {
+    if (body.following && !body.following->in_sand) continue;
+    placeAnew(body, body.following ? body.following->pose : body.motion.poseAt(before));
+  }
+}
+
+void SandBodies::placeAnew(Body& body, const Eigen::Isometry3d& rest) {
+  const double now = simulator_.time();
+  Motion motion;
+  if (body.of_scene.empty()) {
+    motion.append(now, rest);
+  } else {
+    for (const PoseKey& key : body.of_scene) motion.append(key.time, key.pose);
+  }
+  body.motion = motion;
+  simulator_.placeBody(body.number, motion.poseAt(now));
+  for (const PoseKey& key : body.of_scene) {
+    if (key.time > now) simulator_.appendPose(body.number, key.time, key.pose);
+  }
+}
+
 void SandBodies::update(const ros::Time& end, double duration, double simulated_end) {
   if (origin_.isZero()) origin_ = end;
   const double time = (end - origin_).toSec();
@@ -172,7 +205,7 @@ void SandBodies::update(const ros::Time& end, double duration, double simulated_
     if (body.following) follow(body, {time - duration, time, simulated_end}, now);
   }
   news_.tell();
-  tellLate();
+  tellLate(duration);
 }
 
 void SandBodies::follow(Body& body, const FrameTimes& times, const ros::Time& now) {
@@ -224,14 +257,16 @@ void SandBodies::noteLate(const Body& body, double late) {
   late_.frame = body.status.frame;
 }
 
-void SandBodies::tellLate() {
+void SandBodies::tellLate(double duration) {
   if (!late_.in_frame) return;
   late_.in_frame = false;
   // That a busy machine holds tf up now and then is no news.
   if (++late_.count < 10 || !mayTell(late_.told, 60.0)) return;
+  // Frames do not end whenever tf comes, but up to a frame earlier.
   ROS_WARN_STREAM("tf came too late to move bodies evenly, at worst "
                   << late_.most << " s, in frame " << late_.frame << "; expected a ~tf_delay of at least "
-                  << tf_delay_ + late_.most << " s (tf's period and latency), not " << tf_delay_ << " s");
+                  << tf_delay_ + late_.most + duration << " s (tf's period and latency), not " << tf_delay_
+                  << " s");
   late_.count = 0;
   late_.most = 0.0;
 }

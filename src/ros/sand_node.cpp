@@ -1,6 +1,7 @@
 #include "shallow_sand/ros/sand_node.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "shallow_sand/Status.h"
 #include "shallow_sand/scene/mesh_file.h"
@@ -12,9 +13,15 @@ namespace shallow_sand {
 
 namespace {
 
-/// Sand time that one frame may catch up [s]; what lies further back is given up, so that a slow machine
-/// stays responsive and a paused one does not race afterwards.
-constexpr double kLongestFrame = 0.1;
+/// Frames that are late are caught up for so long at a time, so that nobody waits longer for an answer [s].
+constexpr double kLongestTurn = 0.1;
+/// Of sand in one call of ~step [s].
+constexpr double kLongestStep = 10.0;
+
+ros::NodeHandle withQueue(ros::NodeHandle node, ros::CallbackQueue& queue) {
+  node.setCallbackQueue(&queue);
+  return node;
+}
 
 Simulator build(const Scene& scene) {
   std::vector<std::string> notes;
@@ -30,18 +37,22 @@ SandConstants constantsOf(const Simulator& simulator) {
 
 }  // namespace
 
-SandNode::SandNode()
-    : parameters_(readNodeParameters(private_node_)),
+SandNode::SandNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
+    : node_(withQueue(node, queue_)),
+      private_node_(withQueue(private_node, queue_)),
+      parameters_(readNodeParameters(private_node_)),
       simulator_(build(parameters_.scene)),
+      clock_(parameters_.frame_rate),
       bodies_(parameters_, transforms_, simulator_),
-      services_(simulator_.grid().spacing, bodies_),
+      services_(private_node_, simulator_.grid().spacing, bodies_),
       pour_(private_node_, bodies_, simulator_),
       body_markers_(private_node_, parameters_.scene.parameters.grid.frame),
-      body_handles_(parameters_.scene.parameters.grid.frame, 1.0 / parameters_.frame_rate, bodies_),
+      body_handles_(private_node_, parameters_.scene.parameters.grid.frame, clock_.length(), bodies_),
       height_field_(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
                     constantsOf(simulator_), parameters_.height_field_rate, parameters_.publish_speed),
       surface_(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
-               parameters_.publish_rate, static_cast<std::size_t>(parameters_.mesh_cells)) {
+               parameters_.publish_rate, static_cast<std::size_t>(parameters_.mesh_cells)),
+      paused_(parameters_.paused) {
   if (simulator_.parameters().grains) {
     particles_.emplace(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
                        parameters_.publish_rate);
@@ -50,62 +61,152 @@ SandNode::SandNode()
     robots_.emplace_back(robot, parameters_.robots.size() == 1, simulator_.grid().spacing);
   }
   status_ = private_node_.advertise<Status>("status", 1, true);
+  pause_ = private_node_.advertiseService("pause", &SandNode::pause, this);
+  step_ = private_node_.advertiseService("step", &SandNode::step, this);
+  reset_ = private_node_.advertiseService("reset", &SandNode::reset, this);
   ROS_INFO_STREAM(simulator_.backendNotice());
   ROS_INFO_STREAM(simulator_.grid().columns << " x " << simulator_.grid().rows << " cells of "
                                             << simulator_.grid().spacing << " m in frame "
                                             << parameters_.scene.parameters.grid.frame);
 }
 
-void SandNode::run() {
+void SandNode::run(const std::function<bool()>& goesOn) {
   ros::WallRate rate(parameters_.frame_rate);
-  const ros::Duration delay(parameters_.tf_delay);
-  while (ros::ok()) {
-    ros::spinOnce();
-    services_.runPending();
-    const ros::Time now = ros::Time::now();
-    if (now < last_now_) restart(last_now_ - now);
-    last_now_ = now;
-    // Simulated time starts at zero, and there is no time before that.
-    if (now.toSec() > parameters_.tf_delay) update(now - delay);
+  while (ros::ok() && goesOn()) {
+    turn();
     rate.sleep();
   }
   writeResults();
 }
 
+void SandNode::turn() {
+  queue_.callAvailable();
+  services_.runPending();
+  for (Robot& robot : robots_) robot.update(node_, bodies_);
+  const ros::Time now = ros::Time::now();
+  if (now < last_now_) restart(last_now_ - now);
+  last_now_ = now;
+  if (sandTime().isZero()) return;
+  if (!paused_ || !clock_.hasStarted()) runDueFrames(sandTime());
+  // Those of the GPU if no frame has run meanwhile.
+  handOverFields();
+  publish();
+}
+
+ros::Time SandNode::sandTime() const {
+  // Simulated time starts at zero, and there is no time before that.
+  if (last_now_.toSec() <= parameters_.tf_delay) return ros::Time();
+  return last_now_ - ros::Duration(parameters_.tf_delay);
+}
+
 void SandNode::restart(const ros::Duration& duration) {
   ROS_WARN_STREAM("time went back by " << duration.toSec() << " s; the sand goes on from here, and bodies "
                                        << "are put at their next poses");
-  last_frame_ = last_status_ = ros::Time();
+  clock_.restart();
   transforms_.restart();
   bodies_.restartClock();
 }
 
-void SandNode::update(const ros::Time& time) {
-  for (Robot& robot : robots_) robot.update(node_, bodies_);
-  beginAdvance(time);
+void SandNode::runDueFrames(const ros::Time& now) {
+  const ros::WallTime begin = ros::WallTime::now();
+  while (clock_.due(now) > 0 && (ros::WallTime::now() - begin).toSec() < kLongestTurn) runFrame();
+  if (clock_.givenUp() - told_given_up_ < FrameClock::kMostBehind) return;
+  ROS_WARN_STREAM_THROTTLE(
+      10.0, "the sand left out " << clock_.givenUp() - told_given_up_
+                                 << " s of ROS time: the machine is too slow for it, or time leapt (see "
+                                    "real_time_factor in ~status; fewer or larger cells, a slower clock or "
+                                    "more threads help)");
+  told_given_up_ = clock_.givenUp();
+}
+
+void SandNode::runFrame() {
+  const ros::Time time = clock_.next();
+  const double end = simulator_.time() + clock_.length();
+  bodies_.update(time, clock_.length(), end);
+  const std::uint64_t steps = simulator_.progress().steps;
+  const ros::WallTime begin = ros::WallTime::now();
+  simulator_.beginAdvanceTo(end);
   // From the GPU they have come while the frame before ended, and this one runs already.
   handOverFields();
-  const ros::WallTime begin = ros::WallTime::now();
   simulator_.time();  // waits for the GPU
   busy_ += (ros::WallTime::now() - begin).toSec();
-  if (last_status_.isZero() || time - last_status_ >= ros::Duration(1.0)) publishStatus(time);
+  steps_in_frame_ = simulator_.progress().steps - steps;
+}
+
+void SandNode::publish() {
+  if ((ros::WallTime::now() - last_status_).toSec() >= 1.0) publishStatus();
   showBodies();
-  if (particles_ && particles_->isDue()) particles_->send(simulator_.grains(), simulator_.fields(), time);
-  requestFields(time);
+  if (particles_ && particles_->isDue())
+    particles_->send(simulator_.grains(), simulator_.fields(), clock_.end());
+  requestFields();
   // The CPU has computed all before it returned: fields need not wait for a frame.
   if (simulator_.backend() == Backend::cpu) handOverFields();
 }
 
-void SandNode::beginAdvance(const ros::Time& time) {
-  const double elapsed = last_frame_.isZero() ? 0.0 : (time - last_frame_).toSec();
-  last_frame_ = time;
-  if (!(elapsed > 0.0)) return;
-  const double frame = std::min(elapsed, kLongestFrame);
-  const double end = simulator_.time() + frame;
-  bodies_.update(time, frame, end);
-  const ros::WallTime begin = ros::WallTime::now();
-  simulator_.beginAdvanceTo(end);
-  busy_ += (ros::WallTime::now() - begin).toSec();
+bool SandNode::pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
+  if (paused_ && !request.data && clock_.hasStarted()) {
+    clock_.skipTo(std::max(sandTime(), clock_.end()));
+    bodies_.restartClock();
+  }
+  paused_ = request.data != 0;
+  publishStatus();
+  response.success = true;
+  response.message = paused_ ? "paused" : "running";
+  return true;
+}
+
+bool SandNode::step(Step::Request& request, Step::Response& response) {
+  try {
+    stepBy(request.duration);
+    response.success = true;
+    response.message = "done";
+  } catch (const InvalidParameter& problem) {
+    response.success = false;
+    response.message = problem.what();
+    ROS_WARN_STREAM_THROTTLE(5.0, "~step is refused: " << problem.what());
+  }
+  response.simulated_time = simulator_.time();
+  // False would be a failure of the call, without a message.
+  return true;
+}
+
+void SandNode::stepBy(double duration) {
+  if (!paused_) throw InvalidParameter("~step", "running sand", "sand that ~pause has stopped");
+  if (!(duration >= 0.0 && duration <= kLongestStep)) {
+    throw InvalidParameter("duration", std::to_string(duration),
+                           "seconds from 0 to " + std::to_string(kLongestStep));
+  }
+  if (!clock_.hasStarted())
+    throw InvalidParameter("~step", "no ROS time yet", "a clock beyond ~tf_delay (use_sim_time is set)");
+  const auto frames = std::max<std::int64_t>(1, std::llround(duration / clock_.length()));
+  // Where time went on further than the sand goes now, what lies between is left out.
+  const ros::Time begin = sandTime() - ros::Duration(static_cast<double>(frames) * clock_.length());
+  if (begin > clock_.end()) {
+    clock_.skipTo(begin);
+    bodies_.restartClock();
+  }
+  for (std::int64_t frame = 0; frame < frames; ++frame) {
+    waitForPoses(clock_.end() + ros::Duration(clock_.length()));
+    runFrame();
+  }
+  requestFields();
+  handOverFields();
+}
+
+void SandNode::waitForPoses(const ros::Time& time) const {
+  const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(parameters_.tf_timeout);
+  while (ros::ok() && !bodies_.posesHaveCome(time) && ros::WallTime::now() < deadline)
+    ros::WallDuration(0.001).sleep();
+}
+
+bool SandNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  bodies_.restore(startOf(parameters_.scene));
+  last_status_simulated_ = 0.0;
+  publishStatus();
+  response.success = true;
+  response.message = "the sand is as it was at the start";
+  ROS_INFO_STREAM("~reset: " << response.message);
+  return true;
 }
 
 void SandNode::showBodies() {
@@ -117,10 +218,12 @@ void SandNode::showBodies() {
   body_handles_.update(shown);
 }
 
-void SandNode::requestFields(const ros::Time& time) {
-  if (requested_ || !(height_field_.follower().isDue() || surface_.follower().isDue())) return;
+void SandNode::requestFields() {
+  if (requested_ || !clock_.hasStarted() ||
+      !(height_field_.follower().isDue() || surface_.follower().isDue()))
+    return;
   simulator_.requestFields();
-  requested_ = time;
+  requested_ = clock_.end();
 }
 
 void SandNode::handOverFields() {
@@ -134,17 +237,21 @@ void SandNode::handOverFields() {
   requested_.reset();
 }
 
-void SandNode::publishStatus(const ros::Time& time) {
+void SandNode::publishStatus() {
   const Ledger ledger = simulator_.ledger();
   const ros::WallTime wall = ros::WallTime::now();
-  const double wall_elapsed = (wall - last_status_wall_).toSec();
+  const double wall_elapsed = (wall - last_status_).toSec();
   Status status;
-  status.header.stamp = time;
+  status.header.stamp = clock_.hasStarted() ? clock_.end() : ros::Time();
   status.header.frame_id = parameters_.scene.parameters.grid.frame;
   status.backend = toString(simulator_.backend());
   status.simulated_time = simulator_.time();
   status.real_time_factor =
       last_status_.isZero() ? 0.0 : (simulator_.time() - last_status_simulated_) / wall_elapsed;
+  status.paused = paused_;
+  if (clock_.hasStarted()) status.behind = std::max(0.0, (sandTime() - clock_.end()).toSec());
+  status.time_given_up = clock_.givenUp();
+  status.steps_in_frame = static_cast<std::uint32_t>(steps_in_frame_);
   status.steps = simulator_.progress().steps;
   status.cells = static_cast<std::uint32_t>(simulator_.grid().cells());
   status.active_cells = static_cast<std::uint32_t>(simulator_.activeCells());
@@ -157,8 +264,7 @@ void SandNode::publishStatus(const ros::Time& time) {
   status.body_overlap = simulator_.bodyOverlap();
   status.bodies = bodies_.status();
   status_.publish(status);
-  last_status_ = time;
-  last_status_wall_ = wall;
+  last_status_ = wall;
   last_status_simulated_ = simulator_.time();
 }
 

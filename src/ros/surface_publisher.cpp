@@ -2,6 +2,8 @@
 
 #include <ros/console.h>
 
+#include <boost/make_shared.hpp>
+
 #include "shallow_sand/ros/conversions.h"
 
 namespace shallow_sand {
@@ -28,14 +30,20 @@ SurfacePublisher::SurfacePublisher(ros::NodeHandle node, const Grid& grid, const
   }
 }
 
+// Messages are shared: subscribers in the same process get them without a copy.
 void SurfacePublisher::take(const FieldsChange& change, const ros::Time& stamp) {
   const bool is_first = fields_.depth.empty();
   apply(change, grid_, fields_);
   // Latched, so whoever comes later must find the sand as it is.
-  if (grid_.cells() <= kMostCellsShown) points_.publish(toPointCloud(grid_, fields_, frame_, stamp));
+  if (grid_.cells() <= kMostCellsShown) {
+    points_.publish(
+        boost::make_shared<const sensor_msgs::PointCloud2>(toPointCloud(grid_, fields_, frame_, stamp)));
+  }
   // Dear: made only when somebody looks, or once, so that whoever comes later sees sand at once.
-  if (mesh_.getNumSubscribers() > 0 || is_first)
-    mesh_.publish(toMarker(grid_, fields_, most_mesh_cells_, frame_, stamp));
+  if (mesh_.getNumSubscribers() > 0 || is_first) {
+    mesh_.publish(boost::make_shared<const visualization_msgs::Marker>(
+        toMarker(grid_, fields_, most_mesh_cells_, frame_, stamp)));
+  }
 }
 
 }  // namespace shallow_sand

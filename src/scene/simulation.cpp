@@ -1,5 +1,7 @@
 #include "shallow_sand/scene/simulation.h"
 
+#include <limits>
+#include <numeric>
 #include <utility>
 #include <variant>
 
@@ -44,6 +46,19 @@ Simulator buildSimulator(Scene scene, std::vector<std::string>* notes) {
   } catch (const InvalidParameter& error) {
     throw SceneError(scene.source + ": " + about + error.what());
   }
+}
+
+Snapshot startOf(const Scene& scene) {
+  Snapshot start;
+  const std::vector<float> rest(scene.depth.size(), 0.0f);
+  start.fields.bed = scene.bed;
+  start.fields.depth = scene.depth;
+  start.fields.momentum_x = rest;
+  start.fields.momentum_y = rest;
+  start.next_step = std::numeric_limits<double>::infinity();
+  const double depths = std::accumulate(scene.depth.begin(), scene.depth.end(), 0.0);
+  start.ledger.start = depths * scene.parameters.grid.grid().cellArea();
+  return start;
 }
 
 Eigen::Isometry3d poseAt(const SceneBody& body, double time) {

@@ -15,9 +15,11 @@ namespace shallow_sand {
 /// pushes sand at the speed of the hand, or at ~max_body_speed if the hand is faster.
 class BodyHandles {
  public:
-  /// Messages are taken from the global queue. @param bodies must outlive this
+  /// @param node below which the topics lie; what comes is handled from its callback queue
   /// @param frame_period of the sand [s]
-  BodyHandles(const std::string& sand_frame, double frame_period, SandBodies& bodies);
+  /// @param bodies must outlive this
+  BodyHandles(const ros::NodeHandle& node, const std::string& sand_frame, double frame_period,
+              SandBodies& bodies);
   /// Brings markers to the bodies, save those that are being dragged.
   void update(const std::vector<ShownBody>& shown);
 
@@ -31,6 +33,7 @@ class BodyHandles {
   void take(const visualization_msgs::InteractiveMarkerFeedback& feedback);
   void drag(const visualization_msgs::InteractiveMarkerFeedback& feedback, Handle& handle);
 
+  ros::CallbackQueueInterface& queue_;
   std::string sand_frame_;
   double frame_period_;
   SandBodies& bodies_;

@@ -21,8 +21,9 @@ namespace shallow_sand {
 /// loop.
 class BodyServices {
  public:
+  /// @param node below which the services lie
   /// @param bodies must outlive this; used in `runPending` only
-  BodyServices(double sand_spacing, SandBodies& bodies);
+  BodyServices(ros::NodeHandle node, double sand_spacing, SandBodies& bodies);
   /// To be called by the node's loop: does what requests have handed over.
   void runPending();
 
@@ -38,7 +39,6 @@ class BodyServices {
   std::mutex mutex_;
   std::packaged_task<void()> pending_;  ///< guarded; at most one, for there is one thread of requests
   ros::CallbackQueue queue_;
-  ros::NodeHandle node_{"~"};
   ros::ServiceServer add_;
   ros::ServiceServer remove_;
   ros::ServiceServer move_;

@@ -25,6 +25,7 @@ struct NodeParameters {
   Scene scene;                          ///< from the keys of a scene file
   std::vector<RobotParameters> robots;  ///< none if ~robot_description is empty
   double frame_rate = 50.0;             ///< at which poses are taken and the sand runs on [Hz]
+  bool paused = false;                  ///< at the start
   double publish_rate = 5.0;            ///< of ~points, ~mesh and ~bodies, of the wall clock [Hz]
   double height_field_rate = 10.0;      ///< of ~height_field_updates, of the wall clock [Hz]
   bool publish_speed = true;            ///< in ~height_field and its updates

@@ -71,8 +71,15 @@ class SandBodies {
   /// Tells the simulator where bodies go in the frame that ends at ROS time `end` and simulated time
   /// `simulated_end` [s], and that is `duration` [s] long.
   void update(const ros::Time& end, double duration, double simulated_end);
-  /// To be called when ROS time went backwards: bodies that follow tf are put at their next poses.
+  /// To be called when ROS time went backwards, or frames of the sand do not go on where the last one ended:
+  /// bodies that follow tf are put at their next poses.
   void restartClock();
+  /// Whether tf has come up to a time for all bodies that follow it and move.
+  bool posesHaveCome(const ros::Time& time) const;
+
+  /// Has the sand go on from `snapshot`. Bodies of the scene are then where the scene has them at its time,
+  /// all others stay where they are. @throws InvalidParameter if it does not fit; nothing changes then
+  void restore(const Snapshot& snapshot);
 
   std::vector<BodyStatus> status() const;
   /// Those of the scene and those that services have added, as soon as they have a pose; not robots' links.
@@ -91,16 +98,20 @@ class SandBodies {
     std::size_t number;  ///< of the simulator
     Eigen::AlignedBox3d box;
     std::optional<Following> following;
-    Motion motion;  ///< of a body that follows no frame; simulated time
+    Motion motion;                  ///< of a body that follows no frame; simulated time
+    std::vector<PoseKey> of_scene;  ///< that the scene gave it; none for other bodies
     BodyStatus status;
     std::optional<BodyAppearance> appearance;  ///< none: it is not shown
   };
   Body& add(const std::string& name, const std::shared_ptr<const DistanceField>& field);
   std::size_t indexOf(const std::string& name) const;
   void follow(Body& body, const FrameTimes& times, const ros::Time& now);
+  /// Puts a body where it rests or, of the scene, goes on from the present simulated time on.
+  void placeAnew(Body& body, const Eigen::Isometry3d& rest);
   void apply(Body& body, const Movement& movement);
   void noteLate(const Body& body, double late);
-  void tellLate();
+  /// @param duration of this frame [s]
+  void tellLate(double duration);
   void report(Body& body, std::uint8_t state, const std::string& problem);
   Eigen::Isometry3d lookUp(const TfFrame& frame, const ros::Time& time) const;
 

@@ -14,6 +14,9 @@ namespace shallow_sand {
 /// @throws SceneError, also if the backend that the scene asks for is not there
 Simulator buildSimulator(Scene scene, std::vector<std::string>* notes = nullptr);
 
+/// What a simulator of the scene begins with: its sand at rest, at time 0.
+Snapshot startOf(const Scene& scene);
+
 /// Where a body of a scene is at a time [s], in the grid's frame.
 Eigen::Isometry3d poseAt(const SceneBody& body, double time);
 
