@@ -1,0 +1,1 @@
+// Nothing: the target it belongs to compiles headers that most tests include.
