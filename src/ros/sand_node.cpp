@@ -185,16 +185,16 @@ void SandNode::stepBy(double duration) {
     clock_.skipTo(begin);
     bodies_.restartClock();
   }
+  const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(parameters_.tf_timeout);
   for (std::int64_t frame = 0; frame < frames; ++frame) {
-    waitForPoses(clock_.end() + ros::Duration(clock_.length()));
+    waitForPoses(clock_.end() + ros::Duration(clock_.length()), deadline);
     runFrame();
   }
   requestFields();
   handOverFields();
 }
 
-void SandNode::waitForPoses(const ros::Time& time) const {
-  const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(parameters_.tf_timeout);
+void SandNode::waitForPoses(const ros::Time& time, const ros::WallTime& deadline) const {
   while (ros::ok() && !bodies_.posesHaveCome(time) && ros::WallTime::now() < deadline)
     ros::WallDuration(0.001).sleep();
 }

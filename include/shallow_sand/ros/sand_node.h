@@ -71,8 +71,8 @@ class SandNode {
   /// Runs a paused sand on by whole frames. @throws InvalidParameter if it is not paused, or for a duration
   /// that is too long or none
   void stepBy(double duration);
-  /// Until tf has come up to `time` for what moves, or ~tf_timeout of wall time has passed.
-  void waitForPoses(const ros::Time& time) const;
+  /// Until tf has come up to `time` for what moves, at most until `deadline`.
+  void waitForPoses(const ros::Time& time, const ros::WallTime& deadline) const;
   /// ROS time less ~tf_delay: what the sand runs up to; zero before there is such a time.
   ros::Time sandTime() const;
   void requestFields();
