@@ -41,7 +41,9 @@ SandNode::SandNode()
       height_field_(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
                     constantsOf(simulator_), parameters_.height_field_rate, parameters_.publish_speed),
       surface_(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
-               parameters_.publish_rate, static_cast<std::size_t>(parameters_.mesh_cells)) {
+               parameters_.publish_rate, static_cast<std::size_t>(parameters_.mesh_cells)),
+      contacts_(private_node_, parameters_.scene.depth, parameters_.scene.parameters.grid.frame,
+                parameters_.publish_rate) {
   if (simulator_.parameters().grains) {
     particles_.emplace(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
                        parameters_.publish_rate);
@@ -91,6 +93,7 @@ void SandNode::update(const ros::Time& time) {
   if (last_status_.isZero() || time - last_status_ >= ros::Duration(1.0)) publishStatus(time);
   showBodies();
   if (particles_ && particles_->isDue()) particles_->send(simulator_.grains(), simulator_.fields(), time);
+  if (contacts_.isDue()) contacts_.send(simulator_, time);
   requestFields(time);
   // The CPU has computed all before it returned: fields need not wait for a frame.
   if (simulator_.backend() == Backend::cpu) handOverFields();
