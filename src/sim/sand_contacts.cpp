@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "shallow_sand/coupling/rays.h"
+#include "shallow_sand/coupling/rays_together.h"
 #include "shallow_sand/solver/equations.h"
 
 namespace shallow_sand {
@@ -52,14 +52,12 @@ class SandAndBodies {
   SandAndBodies(const Grid& grid, const Fields& fields, std::size_t bodies)
       : grid(grid), fields(fields), bodies(bodies), closed_(grid.cells(), false) {}
 
-  void castRays(const BodiesOverBed& over_bed) {
-    const Window& window = over_bed.bins.window;
-    for (int j = window.row_begin; j < window.row_end; ++j) {
-      for (int i = window.column_begin; i < window.column_end; ++i) {
-        const SolidIntervals solids = solidsAt(over_bed, i, j);
-        if (solids.count > 0) add(i, j, solids);
-      }
-    }
+  /// Takes what the ray of a column found.
+  void add(int i, int j, const SolidIntervals& solids) {
+    if (solids.count == 0) return;
+    for (int k = 0; k < solids.count; ++k) bodyOf(solids.at[k]).add(i, j, solids.at[k]);
+    addGround(i, j, lowestSolid(solids, grid.spacing));
+    if (!fields.load.empty()) addLoad(i, j, lowestSolid(solids, grid.spacing), solids);
   }
 
   bool isOnGrid(int i, int j) const { return i >= 0 && i < grid.columns && j >= 0 && j < grid.rows; }
@@ -76,19 +74,18 @@ class SandAndBodies {
   std::vector<CoveredColumns> bodies;
 
  private:
-  void add(int i, int j, const SolidIntervals& solids) {
-    for (int k = 0; k < solids.count; ++k) bodyOf(solids.at[k]).add(i, j, solids.at[k]);
+  void addGround(int i, int j, const LowestSolid& solid) {
     const std::size_t cell = grid.index(i, j);
-    const LowestSolid solid = lowestSolid(solids, grid.spacing);
     const float depth = fields.depth[cell];
-    if (isFull(depth, std::max(solid.bottom - fields.bed[cell], 0.0f), grid.spacing)) {
-      closed_[cell] = true;
-      if (depth >= Fields::kDust) lastColumn(solid.lowest_body).touched_below = true;
-    }
-    if (fields.load.empty()) return;
-    const float load = fields.load[cell];
-    lastColumn(solid.highest_body).load = static_cast<double>(load);
-    lastColumn(solid.highest_body).load_foot = static_cast<double>(solid.top);
+    if (!isFull(depth, std::max(solid.bottom - fields.bed[cell], 0.0f), grid.spacing)) return;
+    closed_[cell] = true;
+    if (depth >= Fields::kDust) lastColumn(solid.lowest_body).touched_below = true;
+  }
+  void addLoad(int i, int j, const LowestSolid& solid, const SolidIntervals& solids) {
+    const float load = fields.load[grid.index(i, j)];
+    CoveredColumn& under = lastColumn(solid.highest_body);
+    under.load = static_cast<double>(load);
+    under.load_foot = static_cast<double>(solid.top);
     if (!(load >= Fields::kDust) || !isFull(load, solid.next - solid.top, grid.spacing)) return;
     for (int k = 0; k < solids.count; ++k) {
       if (solids.at[k].bottom == solid.next) lastColumn(solids.at[k].body).touched_below = true;
@@ -99,6 +96,13 @@ class SandAndBodies {
   CoveredColumn& lastColumn(int body) { return bodies[static_cast<std::size_t>(body)].columns.back(); }
 
   std::vector<bool> closed_;
+};
+
+/// Called with what the ray of each column found.
+struct AddColumn : BodiesOverBed {
+  SandAndBodies* all;
+
+  void operator()(int i, int j, const SolidIntervals& solids) const { all->add(i, j, solids); }
 };
 
 /// One body and the sand around it; see SandContact.
@@ -233,7 +237,8 @@ class BodyInSand {
 }  // namespace
 
 std::vector<SandContact> sandContacts(const Grid& grid, const Fields& fields,
-                                      const std::vector<PlacedBody>& bodies) {
+                                      const std::vector<PlacedBody>& bodies, InstructionSet instructions) {
+  const RaysTogether rays(instructions);
   std::vector<BodyView> views;
   std::vector<Window> windows;
   for (const PlacedBody& body : bodies) {
@@ -243,10 +248,13 @@ std::vector<SandContact> sandContacts(const Grid& grid, const Fields& fields,
   windows = withoutOverlap(windows);
   const BinLists lists = binLists(bodies, windows);
   SandAndBodies all(grid, fields, bodies.size());
+  const HostExecutor one_thread(1);
+  HostExecutor::Memory<float> bed(grid.cells());  // has the room that rays want
+  bed.upload(fields.bed.data(), grid.cells());
   for (std::size_t k = 0; k < windows.size(); ++k) {
     const BodyBins bins{views.data(), lists.first.data() + lists.first_begins[k], lists.members.data(),
                         windows[k], lists.across[k]};
-    all.castRays({bins, fields.bed.data(), grid.columns, grid.spacing});
+    rays.forEachColumn(one_thread, AddColumn{{bins, bed.data(), grid.columns, grid.spacing}, &all});
   }
   std::vector<SandContact> contacts;
   for (std::size_t k = 0; k < bodies.size(); ++k)

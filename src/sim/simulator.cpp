@@ -174,10 +174,11 @@ class Simulator::Implementation {
     }
 #endif
     if (!engine_) {
-      engine_ = makeHostEngine(start, chosen_.threads, parameters_.sleeping,
-                               parameters_.instructions.value_or(instructionSets().back()));
+      engine_ = makeHostEngine(start, chosen_.threads, parameters_.sleeping, instructions());
     }
   }
+
+  InstructionSet instructions() const { return parameters_.instructions.value_or(instructionSets().back()); }
 
   void addPour(const Pour& pour) {
     pour.validate();
@@ -544,7 +545,7 @@ class Simulator::Implementation {
       bodies.push_back(place(k, instant.poses[k], instant.twists[k]));
       bodies.back().view.field.distance = bodies_[k].field->distance.data();
     }
-    std::vector<SandContact> contacts = sandContacts(grid_, now, bodies);
+    std::vector<SandContact> contacts = sandContacts(grid_, now, bodies, instructions());
     for (std::size_t k = 0; k < bodies.size(); ++k) contacts[k].name = bodies_[bodies[k].body].name;
     std::stable_sort(contacts.begin(), contacts.end(),
                      [](const SandContact& a, const SandContact& b) { return a.name < b.name; });

@@ -176,7 +176,7 @@ TEST(SandContacts, OfABuriedBodyConvergeToItsVolume) {
   std::mt19937 random = seededGenerator();
   constexpr int kBodies = 12;
   constexpr double kDepth = 1.0;
-  const std::vector<double> spacings{0.04, 0.02, 0.01};
+  const std::vector<double> spacings{0.05, 0.025, 0.0125};
   std::vector<double> errors(spacings.size(), 0.0);
   for (int trial = 0; trial < kBodies; ++trial) {
     const RandomBody body = randomBody(random, 0.05);

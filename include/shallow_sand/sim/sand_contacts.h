@@ -4,6 +4,7 @@
 
 #include "shallow_sand/core/fields.h"
 #include "shallow_sand/coupling/sand_contact.h"
+#include "shallow_sand/device/instruction_set.h"
 #include "shallow_sand/sim/body_windows.h"
 
 namespace shallow_sand {
@@ -12,6 +13,6 @@ namespace shallow_sand {
 /// @param fields sand that has made way for the bodies where they are
 /// @param bodies with distance fields on the host; their `body` is not read
 std::vector<SandContact> sandContacts(const Grid& grid, const Fields& fields,
-                                      const std::vector<PlacedBody>& bodies);
+                                      const std::vector<PlacedBody>& bodies, InstructionSet instructions);
 
 }  // namespace shallow_sand
