@@ -56,8 +56,9 @@ class SandAndBodies {
   void add(int i, int j, const SolidIntervals& solids) {
     if (solids.count == 0) return;
     for (int k = 0; k < solids.count; ++k) bodyOf(solids.at[k]).add(i, j, solids.at[k]);
-    addGround(i, j, lowestSolid(solids, grid.spacing));
-    if (!fields.load.empty()) addLoad(i, j, lowestSolid(solids, grid.spacing), solids);
+    const LowestSolid solid = lowestSolid(solids, grid.spacing);
+    addGround(i, j, solid);
+    if (!fields.load.empty()) addLoad(i, j, solid, solids);
   }
 
   bool isOnGrid(int i, int j) const { return i >= 0 && i < grid.columns && j >= 0 && j < grid.rows; }
@@ -249,9 +250,12 @@ std::vector<SandContact> sandContacts(const Grid& grid, const Fields& fields,
   const BinLists lists = binLists(bodies, windows);
   SandAndBodies all(grid, fields, bodies.size());
   const HostExecutor one_thread(1);
-  HostExecutor::Memory<float> bed(grid.cells());  // has the room that rays want
-  bed.upload(fields.bed.data(), grid.cells());
+  HostExecutor::Memory<float> bed(grid.cells());  // has the room that rays want, and is filled where they are
   for (std::size_t k = 0; k < windows.size(); ++k) {
+    for (int j = windows[k].row_begin; j < windows[k].row_end; ++j) {
+      const std::size_t begin = grid.index(windows[k].column_begin, j);
+      std::copy_n(fields.bed.data() + begin, windows[k].columns(), bed.data() + begin);
+    }
     const BodyBins bins{views.data(), lists.first.data() + lists.first_begins[k], lists.members.data(),
                         windows[k], lists.across[k]};
     rays.forEachColumn(one_thread, AddColumn{{bins, bed.data(), grid.columns, grid.spacing}, &all});

@@ -537,7 +537,10 @@ class Simulator::Implementation {
 
   std::vector<SandContact> contacts(const Fields& now) {
     finish();
-    checkField("depth", now.depth, grid_, 0.0f);
+    if (now.depth.size() != grid_.cells()) {
+      throw InvalidParameter("fields", std::to_string(now.depth.size()) + " cells",
+                             std::to_string(grid_.cells()));
+    }
     const Instant instant = instantAt(time_, nullptr);
     std::vector<PlacedBody> bodies;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
