@@ -52,6 +52,8 @@ SandNode::SandNode(const ros::NodeHandle& node, const ros::NodeHandle& private_n
                     constantsOf(simulator_), parameters_.height_field_rate, parameters_.publish_speed),
       surface_(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
                parameters_.publish_rate, static_cast<std::size_t>(parameters_.mesh_cells)),
+      contacts_(private_node_, parameters_.scene.depth, parameters_.scene.parameters.grid.frame,
+                parameters_.publish_rate),
       paused_(parameters_.paused) {
   if (simulator_.parameters().grains) {
     particles_.emplace(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
@@ -138,6 +140,7 @@ void SandNode::publish() {
   showBodies();
   if (particles_ && particles_->isDue())
     particles_->send(simulator_.grains(), simulator_.fields(), clock_.end());
+  if (contacts_.isDue() && clock_.hasStarted()) contacts_.send(simulator_, clock_.end());
   requestFields();
   // The CPU has computed all before it returned: fields need not wait for a frame.
   if (simulator_.backend() == Backend::cpu) handOverFields();

@@ -10,6 +10,7 @@
 
 #include "shallow_sand/bodies/motion.h"
 #include "shallow_sand/sim/engine.h"
+#include "shallow_sand/sim/sand_contacts.h"
 #include "shallow_sand/solver/sand_constants.h"
 
 namespace shallow_sand {
@@ -173,10 +174,11 @@ class Simulator::Implementation {
     }
 #endif
     if (!engine_) {
-      engine_ = makeHostEngine(start, chosen_.threads, parameters_.sleeping,
-                               parameters_.instructions.value_or(instructionSets().back()));
+      engine_ = makeHostEngine(start, chosen_.threads, parameters_.sleeping, instructions());
     }
   }
+
+  InstructionSet instructions() const { return parameters_.instructions.value_or(instructionSets().back()); }
 
   void addPour(const Pour& pour) {
     pour.validate();
@@ -533,6 +535,26 @@ class Simulator::Implementation {
     return engine_->overlap(placed(instantAt(time_, nullptr)));
   }
 
+  std::vector<SandContact> contacts(const Fields& now) {
+    finish();
+    if (now.depth.size() != grid_.cells()) {
+      throw InvalidParameter("fields", std::to_string(now.depth.size()) + " cells",
+                             std::to_string(grid_.cells()));
+    }
+    const Instant instant = instantAt(time_, nullptr);
+    std::vector<PlacedBody> bodies;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      if (bodies_[k].motion.empty()) continue;
+      bodies.push_back(place(k, instant.poses[k], instant.twists[k]));
+      bodies.back().view.field.distance = bodies_[k].field->distance.data();
+    }
+    std::vector<SandContact> contacts = sandContacts(grid_, now, bodies, instructions());
+    for (std::size_t k = 0; k < bodies.size(); ++k) contacts[k].name = bodies_[bodies[k].body].name;
+    std::stable_sort(contacts.begin(), contacts.end(),
+                     [](const SandContact& a, const SandContact& b) { return a.name < b.name; });
+    return contacts;
+  }
+
   void requireShorterStep(double bound) const {
     const SolverParameters& solver = parameters_.solver;
     std::ostringstream expected;
@@ -675,6 +697,9 @@ const Progress& Simulator::progress() const {
   return implementation_->progress_;
 }
 double Simulator::bodyOverlap() const { return implementation_->bodyOverlap(); }
+std::vector<SandContact> Simulator::contacts(const Fields& now) const {
+  return implementation_->contacts(now);
+}
 
 double Simulator::maxSpeed() const {
   const SandConstants sand = sandConstants(grid(), parameters().gravity, parameters().material);

@@ -8,10 +8,11 @@
 #include "benchmark/run_benchmarks.h"
 #include "benchmark/timing.h"
 #include "shallow_sand/bodies/distance_field.h"
+#include "shallow_sand/core/moved_volume.h"
 #include "shallow_sand/device/passive_threads.h"
 
-/// What bodies add to the cost of a step; see README.md here. The same sand runs by turns with and without
-/// bodies, so that what else a machine does falls on both.
+/// What bodies add to the cost of a step, and what it costs to ask what they do; see README.md here. The same
+/// sand runs by turns with and without bodies, so that what else a machine does falls on both.
 namespace shallow_sand {
 namespace {
 
@@ -99,6 +100,23 @@ void coupling(benchmark::State& state) {
   state.counters["moving"] = static_cast<double>(with.activeCells());
 }
 
+/// Of what the links do to the sand, on the host: figures of all of them, and the volume that was moved.
+void contacts(benchmark::State& state) {
+  const Map map = computedMap(static_cast<int>(state.range(0)), false);
+  Simulator simulator = map.simulator();
+  const double size = map.parameters.grid.size.x();
+  Links links(simulator, static_cast<int>(state.range(1)), 0.01 * static_cast<double>(state.range(2)) * size,
+              true);
+  links.tellNextFrame();
+  simulator.advance(kFrame);
+  const Fields fields = simulator.fields();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(simulator.contacts(fields));
+    benchmark::DoNotOptimize(movedVolume(simulator.grid(), map.depth, fields));
+  }
+  state.counters["fields_ms"] = 1e3 * secondsOf([&] { benchmark::DoNotOptimize(simulator.fields()); });
+}
+
 void registerAll() {
   benchmark::RegisterBenchmark("coupling", coupling)
       ->ArgNames({"side", "bodies", "square", "moving", "in_sand"})
@@ -107,6 +125,12 @@ void registerAll() {
       ->ArgsProduct({{1024}, {200}, {90}, {0, 1}, {1}})
       ->Args({64, 2, 50, 1, 1})
       ->UseManualTime()
+      ->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("contacts", contacts)
+      ->ArgNames({"side", "bodies", "square"})
+      ->ArgsProduct({{512}, {0, 50}, {25, 90}})
+      ->Args({1024, 200, 90})
+      ->Args({64, 2, 50})
       ->Unit(benchmark::kMillisecond);
 }
 

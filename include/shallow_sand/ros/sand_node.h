@@ -13,6 +13,7 @@
 #include "shallow_sand/ros/body_handles.h"
 #include "shallow_sand/ros/body_markers.h"
 #include "shallow_sand/ros/body_services.h"
+#include "shallow_sand/ros/contacts_publisher.h"
 #include "shallow_sand/ros/frame_clock.h"
 #include "shallow_sand/ros/height_field_publisher.h"
 #include "shallow_sand/ros/node_parameters.h"
@@ -39,7 +40,7 @@ namespace shallow_sand {
 /// - serves ~add_body, ~move_body and ~remove_body; meshes are read and sampled beside the sand;
 /// - publishes ~points, ~mesh (latched, at ~publish_rate), ~height_field and its updates, each beside the
 /// sand: the sand hands over what has changed, on the GPU while the next frame runs, and waits for nobody;
-/// and ~particles while somebody listens, if the scene has grains;
+/// and, while somebody listens, ~contacts and, if the scene has grains, ~particles;
 /// - publishes ~status (latched, once a second) and ~bodies (latched, when one has moved, at most at
 /// ~publish_rate);
 /// - takes sand from and for ~pour, and lets bodies be dragged by interactive markers under ~body_handles;
@@ -97,6 +98,7 @@ class SandNode {
   BodyHandles body_handles_;
   HeightFieldPublisher height_field_;
   SurfacePublisher surface_;
+  ContactsPublisher contacts_;
   std::optional<ParticlesPublisher> particles_;  ///< if the scene has grains
   ros::Publisher status_;
   ros::ServiceServer pause_;

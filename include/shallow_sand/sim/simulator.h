@@ -10,6 +10,7 @@
 #include "shallow_sand/bodies/distance_field.h"
 #include "shallow_sand/core/fields.h"
 #include "shallow_sand/core/parameters.h"
+#include "shallow_sand/coupling/sand_contact.h"
 #include "shallow_sand/device/instruction_set.h"
 #include "shallow_sand/device/window.h"
 #include "shallow_sand/particles/grains.h"
@@ -149,6 +150,9 @@ class Simulator {
   double maxSpeed() const;          ///< of the sand now [m/s]
   std::size_t activeCells() const;  ///< cells whose sand moves now
   double bodyOverlap() const;       ///< sand inside bodies now [m³]
+  /// What each body that has a pose does to the sand now, by name and, of one name, by number. Computed on
+  /// the host when it is asked. @param now fields() @throws InvalidParameter if there are not so many cells
+  std::vector<SandContact> contacts(const Fields& now) const;
 
  private:
   class Implementation;
