@@ -54,6 +54,17 @@ void checkMaterial(const MaterialFields& fields, Material material, const Grid& 
   check("material.dilute_layer.depth", fields.layer_depth, &Material::layer_depth);
 }
 
+/// Holds a number of a new material to what there is where a map gives it. @param unit to tell it in
+void requireUnlessMapped(const char* key, const std::vector<float>& map, double now, double wanted,
+                         double unit) {
+  if (map.empty() || wanted == now) return;
+  std::ostringstream found;
+  std::ostringstream expected;
+  found << wanted / unit;
+  expected << now / unit << " as it is, for a map gives it cell by cell";
+  throw InvalidParameter(key, found.str(), expected.str());
+}
+
 /// From one pose to another; of a rotation by nothing, roundings would make an axis.
 Eigen::AngleAxisd turnBetween(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to) {
   if (to.linear() == from.linear()) return Eigen::AngleAxisd::Identity();
@@ -142,7 +153,7 @@ class Simulator::Implementation {
 
   Implementation(const SimulatorParameters& parameters, std::vector<float> bed, std::vector<float> depth,
                  const MaterialFields& material)
-      : parameters_(parameters) {
+      : parameters_(parameters), material_fields_(material) {
     parameters_.validate();
     grid_ = parameters_.grid.grid();
     checkField("bed", bed, grid_, -std::numeric_limits<float>::infinity());
@@ -195,6 +206,33 @@ class Simulator::Implementation {
     std::ostringstream found;
     found << "[" << position.x() << ", " << position.y() << "]";
     throw InvalidParameter(key, found.str(), "a place on the grid");
+  }
+
+  void setMaterial(const Material& material) {
+    material.validate();
+    const Material& now = parameters_.material;
+    requireUnlessMapped("material.friction_angle", material_fields_.friction_angle, now.friction_angle,
+                        material.friction_angle, M_PI / 180.0);
+    requireUnlessMapped("material.dilute_layer.fraction", material_fields_.layer_fraction, now.layer_fraction,
+                        material.layer_fraction, 1.0);
+    requireUnlessMapped("material.dilute_layer.depth", material_fields_.layer_depth, now.layer_depth,
+                        material.layer_depth, 1.0);
+    finish();
+    parameters_.material = material;
+    sendSand();
+  }
+
+  void setGravity(const Eigen::Vector3d& gravity) {
+    validateGravity(gravity);
+    finish();
+    parameters_.gravity = gravity;
+    sendSand();
+  }
+
+  /// Material and gravity as they are now.
+  void sendSand() {
+    engine_->setSand(sandConstants(grid_, parameters_.gravity, parameters_.material),
+                     localMaterial(parameters_.material, material_fields_, grid_));
   }
 
   double edit(const Edit& edit) {
@@ -596,6 +634,7 @@ class Simulator::Implementation {
   static constexpr std::size_t kMostPlacements = 64;            // in a run of steps
 
   SimulatorParameters parameters_;
+  MaterialFields material_fields_;  // maps that were given at the start
   Grid grid_;
   ChosenBackend chosen_;
   std::unique_ptr<Engine> engine_;
@@ -643,6 +682,8 @@ void Simulator::placeBody(std::size_t body, const Eigen::Isometry3d& pose) {
 void Simulator::removeBody(std::size_t body) { implementation_->removeBody(body); }
 void Simulator::addPour(const Pour& pour) { implementation_->addPour(pour); }
 double Simulator::edit(const Edit& edit) { return implementation_->edit(edit); }
+void Simulator::setMaterial(const Material& material) { implementation_->setMaterial(material); }
+void Simulator::setGravity(const Eigen::Vector3d& gravity) { implementation_->setGravity(gravity); }
 Snapshot Simulator::snapshot() const { return implementation_->snapshot(); }
 void Simulator::restore(const Snapshot& snapshot) { implementation_->restore(snapshot); }
 void Simulator::advance(double duration) {

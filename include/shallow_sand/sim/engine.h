@@ -39,6 +39,9 @@ class Engine {
   virtual void start(const StepRun& run, std::vector<Placement> placements) = 0;
   /// Waits for the run that was started. Returns where it came to.
   virtual StepRun finish() = 0;
+  /// From now on the sand is of this kind, in this gravity: all of it wakes up. The material's lists are as
+  /// long as those that the engine was made with.
+  virtual void setSand(const SandConstants& sand, const LocalMaterialFields& material) = 0;
   /// Changes the sand at once. Returns by how much it grew [m³].
   virtual double edit(const LocalRegion& region, EditOperation operation, float value) = 0;
 

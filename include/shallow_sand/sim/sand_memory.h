@@ -94,6 +94,14 @@ class SandMemory {
         layer_depth(uploaded(start.material.layer_depth)),
         left_over_edges(2 * static_cast<std::size_t>(grid.columns + grid.rows), 0.0) {}
 
+  /// @param material lists as long as those at the start
+  void setSand(const SandConstants& constants, const LocalMaterialFields& material) {
+    sand = constants;
+    set(repose_rise, material.repose_rise);
+    set(layer_fraction, material.layer_fraction);
+    set(layer_depth, material.layer_depth);
+  }
+
   void addBody(const DistanceField& field) {
     Memory<float> distance = uploaded(field.distance);
     if (contacts.empty()) contacts.emplace_back(bed);

@@ -91,7 +91,7 @@ class Simulator {
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
 
-  const SimulatorParameters& parameters() const;
+  const SimulatorParameters& parameters() const;  ///< as they are now
   const Grid& grid() const;
   Backend backend() const;  ///< the one in use: cpu or cuda
   int threads() const;      ///< of the CPU backend; 1 on the GPU
@@ -115,9 +115,18 @@ class Simulator {
   /// left. @throws InvalidParameter also if the region lies outside of the grid
   double edit(const Edit& edit);
 
+  /// From now on the sand is of this kind; all of it wakes up, and whatever no longer holds slides. The sand
+  /// goes on as one that was built with the material and took over this one's snapshot. What a map gave at
+  /// the start stays. @throws InvalidParameter also for a value other than the present one where a map gives
+  /// it
+  void setMaterial(const Material& material);
+  /// The same for gravity, in the grid's frame [m/s²]. @throws InvalidParameter
+  void setGravity(const Eigen::Vector3d& gravity);
+
   Snapshot snapshot() const;
   /// Goes on from a snapshot of a simulator that was built from the same parameters, pours and bodies: with
-  /// the same bits. @throws InvalidParameter if it does not fit
+  /// the same bits. Parameters stay those of this simulator, whatever they were when the snapshot was taken.
+  /// @throws InvalidParameter if it does not fit
   void restore(const Snapshot& snapshot);
 
   /// Runs the sand on by `duration` [s] exactly. @throws InvalidParameter when negative, not finite, or when
