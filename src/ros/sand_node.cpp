@@ -135,7 +135,8 @@ void SandNode::handOverFields() {
 }
 
 void SandNode::publishStatus(const ros::Time& time) {
-  const Ledger ledger = simulator_.ledger();
+  const SandFigures figures = simulator_.figures();
+  const Ledger& ledger = figures.ledger;
   const ros::WallTime wall = ros::WallTime::now();
   const double wall_elapsed = (wall - last_status_wall_).toSec();
   Status status;
@@ -147,8 +148,8 @@ void SandNode::publishStatus(const ros::Time& time) {
       last_status_.isZero() ? 0.0 : (simulator_.time() - last_status_simulated_) / wall_elapsed;
   status.steps = simulator_.progress().steps;
   status.cells = static_cast<std::uint32_t>(simulator_.grid().cells());
-  status.active_cells = static_cast<std::uint32_t>(simulator_.activeCells());
-  status.max_speed = simulator_.maxSpeed();
+  status.active_cells = static_cast<std::uint32_t>(figures.active_cells);
+  status.max_speed = figures.max_speed;
   status.volume_start = ledger.start;
   status.volume_poured = ledger.poured;
   status.volume_left = ledger.left;

@@ -293,6 +293,16 @@ Fields CudaEngine::fields() {
   return collectFields();
 }
 
+SandView CudaEngine::view() {
+  requestFields();
+  const Fields& f = collectFields();
+  if (f.load.empty())
+    return {f.depth.data(), f.momentum_x.data(), f.momentum_y.data(), nullptr, nullptr, nullptr, nullptr};
+  return {f.depth.data(), f.momentum_x.data(),      f.momentum_y.data(),
+          f.load.data(),  f.load_momentum_x.data(), f.load_momentum_y.data(),
+          nullptr};
+}
+
 void CudaEngine::requestFields() {
   FieldSources sources{memory_.state.layer(), {}, nullptr};
   if (!memory_.contacts.empty()) sources = {{}, memory_.columns(), memory_.contacts.front().top.data()};

@@ -259,7 +259,7 @@ class Simulator::Implementation {
     snapshot.time = time_;
     snapshot.next_step = trial_;
     snapshot.progress = progress_;
-    snapshot.ledger = ledgerOf(snapshot.fields);
+    snapshot.ledger = figures().ledger;
     snapshot.grains = grains();
     return snapshot;
   }
@@ -623,11 +623,32 @@ class Simulator::Implementation {
     return engine_->fields();
   }
 
-  Ledger ledger() { return ledgerOf(fields()); }
-
-  Ledger ledgerOf(const Fields& fields) const {
-    return {start_volume_, poured_before_ + engine_->poured(), left_before_ + engine_->left(),
-            (sum(fields.depth) + sum(fields.load)) * grid_.cellArea()};
+  SandFigures figures() {
+    finish();
+    const SandConstants sand = sandConstants(grid_, parameters_.gravity, parameters_.material);
+    const SandView view = engine_->view();
+    SandFigures figures;
+    double ground = 0.0;
+    double loads = 0.0;
+    const auto isMoving = [&](float depth, float momentum_x, float momentum_y) {
+      if (momentum_x == 0.0f && momentum_y == 0.0f) return false;
+      const double inverse = inverseDepth(depth, sand);
+      figures.max_speed = std::max(figures.max_speed, inverse * std::hypot(momentum_x, momentum_y));
+      return true;
+    };
+    for (std::size_t k = 0; k < grid_.cells(); ++k) {
+      const bool swapped = view.cover != nullptr && view.cover[k] == Cover::touching;
+      ground += swapped ? view.load[k] : view.depth[k];
+      bool moves = isMoving(view.depth[k], view.momentum_x[k], view.momentum_y[k]);
+      if (view.load != nullptr) {
+        loads += swapped ? view.depth[k] : view.load[k];
+        moves |= isMoving(view.load[k], view.load_momentum_x[k], view.load_momentum_y[k]);
+      }
+      figures.active_cells += moves ? 1 : 0;
+    }
+    figures.ledger = {start_volume_, poured_before_ + engine_->poured(), left_before_ + engine_->left(),
+                      (ground + loads) * grid_.cellArea()};
+    return figures;
   }
 
   static constexpr double kLongestWayBetweenPlacements = 0.25;  // of a body [cells]
@@ -710,37 +731,14 @@ const Fields& Simulator::collectFields() { return implementation_->engine_->coll
 std::vector<Window> Simulator::takeChanges() { return implementation_->engine_->takeChanges(); }
 Fields Simulator::fields() const { return implementation_->fields(); }
 Grains Simulator::grains() const { return implementation_->grains(); }
-Ledger Simulator::ledger() const { return implementation_->ledger(); }
+SandFigures Simulator::figures() const { return implementation_->figures(); }
+Ledger Simulator::ledger() const { return figures().ledger; }
+double Simulator::maxSpeed() const { return figures().max_speed; }
+std::size_t Simulator::activeCells() const { return figures().active_cells; }
 const Progress& Simulator::progress() const {
   implementation_->finish();
   return implementation_->progress_;
 }
 double Simulator::bodyOverlap() const { return implementation_->bodyOverlap(); }
-
-double Simulator::maxSpeed() const {
-  const SandConstants sand = sandConstants(grid(), parameters().gravity, parameters().material);
-  const Fields f = implementation_->fields();
-  double fastest = 0.0;
-  const auto look = [&](const std::vector<float>& depth, const std::vector<float>& momentum_x,
-                        const std::vector<float>& momentum_y) {
-    for (std::size_t k = 0; k < depth.size(); ++k) {
-      const double inverse = inverseDepth(depth[k], sand);
-      fastest = std::max(fastest, inverse * std::hypot(momentum_x[k], momentum_y[k]));
-    }
-  };
-  look(f.depth, f.momentum_x, f.momentum_y);
-  look(f.load, f.load_momentum_x, f.load_momentum_y);
-  return fastest;
-}
-
-std::size_t Simulator::activeCells() const {
-  const Fields f = implementation_->fields();
-  std::size_t active = 0;
-  for (std::size_t k = 0; k < f.depth.size(); ++k) {
-    const bool load_moves = !f.load.empty() && (f.load_momentum_x[k] != 0.0f || f.load_momentum_y[k] != 0.0f);
-    active += load_moves || f.momentum_x[k] != 0.0f || f.momentum_y[k] != 0.0f ? 1 : 0;
-  }
-  return active;
-}
 
 }  // namespace shallow_sand

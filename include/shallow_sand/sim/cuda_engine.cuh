@@ -30,6 +30,7 @@ class CudaEngine : public Engine {
   void setSand(const SandConstants& sand, const LocalMaterialFields& material) override;
   double edit(const LocalRegion& region, EditOperation operation, float value) override;
   Fields fields() override;
+  SandView view() override;
   void requestFields() override;
   const Fields& collectFields() override;
   std::vector<Window> takeChanges() override { return courier_.takeChanges(); }

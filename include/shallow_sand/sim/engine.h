@@ -13,10 +13,25 @@
 #include "shallow_sand/sim/simulator.h"
 #include "shallow_sand/sim/step_run.h"
 #include "shallow_sand/solver/change_sand.h"
+#include "shallow_sand/solver/cover.h"
 #include "shallow_sand/solver/sand_constants.h"
 #include "shallow_sand/solver/step.h"
 
 namespace shallow_sand {
+
+/// The sand where it lies, a value a cell each, laid out as in Fields; those of loads and cover are null as
+/// long as there are no bodies.
+struct SandView {
+  const float* depth;
+  const float* momentum_x;
+  const float* momentum_y;
+  const float* load;
+  const float* load_momentum_x;
+  const float* load_momentum_y;
+  /// Where it is Cover::touching, the six above tell of the load as the sand and the other way round; may be
+  /// null.
+  const Cover* cover;
+};
 
 /// The fields on their backend, and what computes with them; it knows no motion.
 class Engine {
@@ -46,6 +61,9 @@ class Engine {
   virtual double edit(const LocalRegion& region, EditOperation operation, float value) = 0;
 
   virtual Fields fields() = 0;
+  /// The fields without a copy where the host can read them, else a request and its answer; valid until
+  /// anything else is asked for.
+  virtual SandView view() = 0;
   /// The fields as they are now leave for the host, which has them when they are collected; a run may be
   /// started in between.
   virtual void requestFields() = 0;

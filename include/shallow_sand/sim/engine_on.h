@@ -122,6 +122,7 @@ class EngineOn : public SteppedEngine {
     memory_.swapWhereTouching(memory_.downloaded(c.cover), fields);
     return fields;
   }
+  SandView view() override { return memory_.view(); }
   void requestFields() override {
     const std::vector<Window> changed = changed_.take();
     const bool has_loads = !memory_.contacts.empty();

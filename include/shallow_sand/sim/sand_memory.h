@@ -199,6 +199,24 @@ class SandMemory {
     if (!snapshot.windows.empty()) restoreContacts(layers, snapshot, cover);
   }
 
+  /// For memory that the host can read.
+  SandView view() const {
+    SandView view{state.depth.data(),
+                  state.momentum_x.data(),
+                  state.momentum_y.data(),
+                  nullptr,
+                  nullptr,
+                  nullptr,
+                  nullptr};
+    if (contacts.empty()) return view;
+    const Contacts& c = contacts.front();
+    view.load = c.hidden.depth.data();
+    view.load_momentum_x = c.hidden.momentum_x.data();
+    view.load_momentum_y = c.hidden.momentum_y.data();
+    view.cover = c.cover.data();
+    return view;
+  }
+
   /// Brings the cells of a window up to date in fields that were taken before. On the host.
   void download(const Window& window, Fields& fields) const {
     struct Copy {

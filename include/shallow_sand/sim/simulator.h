@@ -52,6 +52,13 @@ struct Ledger {
   double error() const;
 };
 
+/// What the sand does now.
+struct SandFigures {
+  Ledger ledger;
+  double max_speed = 0.0;        ///< [m/s]
+  std::size_t active_cells = 0;  ///< cells whose sand moves
+};
+
 /// What the last rays found, one value a cell each; all empty if no body is over the map. A run goes on from
 /// it, for what lies on bodies depends on where they were.
 struct ContactSnapshot {
@@ -153,6 +160,9 @@ class Simulator {
   /// The grains as they are now, which go on once at the end of each advance; none without
   /// SimulatorParameters::grains. What of them is seen, and where, grainCloud tells of any copy.
   Grains grains() const;
+  /// All at once: on the CPU it reads the cells where they lie, on the GPU it is a request. The three that
+  /// follow do the same for one of them.
+  SandFigures figures() const;
   Ledger ledger() const;
   const Progress& progress() const;
   double maxSpeed() const;          ///< of the sand now [m/s]
