@@ -28,6 +28,15 @@ SandConstants constantsOf(const Simulator& simulator) {
   return sandConstants(simulator.grid(), parameters.gravity, parameters.material);
 }
 
+/// Of publishers, for the size of the map.
+std::vector<std::string> silences(const Grid& grid) {
+  std::vector<std::string> silences;
+  for (const std::string& silence : {HeightFieldPublisher::silence(grid), SurfacePublisher::silence(grid)}) {
+    if (!silence.empty()) silences.push_back(silence);
+  }
+  return silences;
+}
+
 }  // namespace
 
 SandNode::SandNode()
@@ -41,7 +50,9 @@ SandNode::SandNode()
       height_field_(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
                     constantsOf(simulator_), parameters_.height_field_rate, parameters_.publish_speed),
       surface_(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
-               parameters_.publish_rate, static_cast<std::size_t>(parameters_.mesh_cells)) {
+               parameters_.publish_rate, static_cast<std::size_t>(parameters_.mesh_cells)),
+      diagnostics_(parameters_.scene.parameters.backend, simulator_, silences(simulator_.grid())),
+      reconfiguration_(private_node_, parameters_, simulator_, [this] { takeParameters(); }) {
   if (simulator_.parameters().grains) {
     particles_.emplace(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
                        parameters_.publish_rate);
@@ -67,6 +78,7 @@ void SandNode::run() {
     last_now_ = now;
     // Simulated time starts at zero, and there is no time before that.
     if (now.toSec() > parameters_.tf_delay) update(now - delay);
+    diagnostics_.publishIfDue();
     rate.sleep();
   }
   writeResults();
@@ -101,11 +113,19 @@ void SandNode::beginAdvance(const ros::Time& time) {
   last_frame_ = time;
   if (!(elapsed > 0.0)) return;
   const double frame = std::min(elapsed, kLongestFrame);
+  diagnostics_.noteFrame(elapsed, frame);
   const double end = simulator_.time() + frame;
   bodies_.update(time, frame, end);
   const ros::WallTime begin = ros::WallTime::now();
   simulator_.beginAdvanceTo(end);
   busy_ += (ros::WallTime::now() - begin).toSec();
+}
+
+void SandNode::takeParameters() {
+  surface_.follower().setRate(parameters_.publish_rate);
+  if (particles_) particles_->setRate(parameters_.publish_rate);
+  height_field_.follower().setRate(parameters_.height_field_rate);
+  bodies_.setFastest(parameters_.max_body_speed);
 }
 
 void SandNode::showBodies() {
@@ -158,6 +178,7 @@ void SandNode::publishStatus(const ros::Time& time) {
   status.body_overlap = simulator_.bodyOverlap();
   status.bodies = bodies_.status();
   status_.publish(status);
+  diagnostics_.take(status);
   last_status_ = time;
   last_status_wall_ = wall;
   last_status_simulated_ = simulator_.time();

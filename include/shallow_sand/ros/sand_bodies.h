@@ -74,6 +74,9 @@ class SandBodies {
   /// To be called when ROS time went backwards: bodies that follow tf are put at their next poses.
   void restartClock();
 
+  /// ~max_body_speed from now on. [m/s]
+  void setFastest(double speed);
+
   std::vector<BodyStatus> status() const;
   /// Those of the scene and those that services have added, as soon as they have a pose; not robots' links.
   std::vector<ShownBody> shown() const;

@@ -8,10 +8,12 @@
 #include "shallow_sand/ros/body_handles.h"
 #include "shallow_sand/ros/body_markers.h"
 #include "shallow_sand/ros/body_services.h"
+#include "shallow_sand/ros/diagnostics.h"
 #include "shallow_sand/ros/height_field_publisher.h"
 #include "shallow_sand/ros/node_parameters.h"
 #include "shallow_sand/ros/particles_publisher.h"
 #include "shallow_sand/ros/pour_topic.h"
+#include "shallow_sand/ros/reconfiguration.h"
 #include "shallow_sand/ros/robot.h"
 #include "shallow_sand/ros/sand_bodies.h"
 #include "shallow_sand/ros/surface_publisher.h"
@@ -21,7 +23,8 @@
 namespace shallow_sand {
 
 /// The node. Its contract:
-/// - reads NodeParameters once; a bad one ends it with exit code 2 and one line;
+/// - reads NodeParameters once; a bad one ends it with exit code 2 and one line; some of them, and material
+/// and gravity, can be changed later through ~reconfigure;
 /// - bodies: the scene's, links of the robots in ~robots by their tf frames, and those of ~add_body; a
 /// description may come later, tf may stop: the log says what is missing and the node goes on;
 /// - runs with ROS time (`use_sim_time` too), ~tf_delay behind it, so that the poses that the sand needs have
@@ -34,6 +37,7 @@ namespace shallow_sand {
 /// and ~particles while somebody listens, if the scene has grains;
 /// - publishes ~status (latched, once a second) and ~bodies (latched, when one has moved, at most at
 /// ~publish_rate);
+/// - publishes /diagnostics, once a second of the wall clock;
 /// - takes sand from and for ~pour, and lets bodies be dragged by interactive markers under ~body_handles;
 /// - at the end writes ~report, ~picture and ~mesh_file.
 class SandNode {
@@ -54,6 +58,8 @@ class SandNode {
   void requestFields(const ros::Time& time);
   /// Gives those that were requested to those who wait for them.
   void handOverFields();
+  /// ~publish_rate, ~height_field_rate and ~max_body_speed are others.
+  void takeParameters();
   void showBodies();
   void publishStatus(const ros::Time& time);
   void writeResults() const;
@@ -72,6 +78,8 @@ class SandNode {
   HeightFieldPublisher height_field_;
   SurfacePublisher surface_;
   std::optional<ParticlesPublisher> particles_;  ///< if the scene has grains
+  Diagnostics diagnostics_;
+  Reconfiguration reconfiguration_;
   ros::Publisher status_;
   std::optional<ros::Time> requested_;  ///< time of the fields that are under way from the simulator
   ros::Time last_now_;                  ///< ROS time; the next two are times of the sand
