@@ -80,8 +80,8 @@ std::vector<ParameterRow> makeTable() {
       special("shapes", "map", "a map from patterns of link names to exact, convex_hull or bounding_box",
               "{}", "what stands for links; the longest pattern that matches decides"),
       special("robots", "list", "a list of maps", "[]",
-              "several robots, as above; then the five before this are not read, and must be empty but for "
-              "the first"),
+              "several robots instead of one; then robot_description is not read, and tf_prefix, include, "
+              "exclude and shapes must be empty"),
       words("sand_frame", &N::sand_frame, "the name of a tf frame",
             "tf frame of the sand instead of grid.frame"),
       words("scene_folder", &N::scene_folder, "the path of a folder",
@@ -143,6 +143,7 @@ std::string parameterMarkdown() {
           << row.default_text << (row.default_text.empty() ? "" : unit) << " | " << row.bounds << " | "
           << row.meaning << " |\n";
   }
+  table << "\nThose with a * change while the node runs, through dynamic_reconfigure.\n";
   return table.str();
 }
 
