@@ -2,10 +2,16 @@
 
 #include <ros/console.h>
 
+#include <boost/make_shared.hpp>
+#include <chrono>
 #include <cmath>
+#include <future>
+#include <memory>
+#include <sstream>
 #include <utility>
 
 #include "shallow_sand/ros/parameter_table.h"
+#include "shallow_sand/ros/queued_call.h"
 
 namespace shallow_sand {
 namespace {
@@ -13,8 +19,9 @@ namespace {
 constexpr double kDegree = M_PI / 180.0;
 
 /// What the node before this one has left there is not what this one starts with.
-ros::NodeHandle withStart(const ros::NodeHandle& node, const SandConfig& start) {
+ros::NodeHandle withStart(const ros::NodeHandle& node, ros::CallbackQueue& queue, const SandConfig& start) {
   ros::NodeHandle own(node, kReconfigureNamespace);
+  own.setCallbackQueue(&queue);
   start.__toServer__(own);
   return own;
 }
@@ -71,22 +78,41 @@ Reconfiguration::Reconfiguration(const ros::NodeHandle& node, NodeParameters& pa
       simulator_(simulator),
       changed_(std::move(changed)),
       taken_(startingConfig(parameters, simulator.parameters())),
-      server_(mutex_, withStart(node, taken_)) {
+      server_(mutex_, withStart(node, queue_, taken_)) {
   server_.updateConfig(taken_);
-  server_.setCallback([this](SandConfig& wanted, std::uint32_t) { take(wanted); });
+  server_.setCallback([this](SandConfig& wanted, std::uint32_t) { ask(wanted); });
+  asking_ = true;
+  spinner_.start();
 }
 
-void Reconfiguration::take(SandConfig& wanted) {
+Reconfiguration::~Reconfiguration() {
+  asking_ = false;
+  spinner_.stop();
+}
+
+void Reconfiguration::ask(SandConfig& wanted) {
+  // The first call is the server's own, with what there is.
+  if (!asking_) return;
+  const auto answer = std::make_shared<std::promise<SandConfig>>();
+  std::future<SandConfig> answered = answer->get_future();
+  ros::getGlobalCallbackQueue()->addCallback(
+      boost::make_shared<QueuedCall>([this, answer, wanted] { answer->set_value(take(wanted)); }));
+  while (asking_ && answered.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
+  }
+  if (asking_) wanted = answered.get();
+}
+
+SandConfig Reconfiguration::take(const SandConfig& wanted) {
   try {
     apply(wanted);
   } catch (const InvalidParameter& problem) {
     ROS_WARN_STREAM("reconfigure: " << problem.what() << "; all stays as it was");
-    wanted = taken_;
-    return;
+    return taken_;
   }
   const std::string changes = changesBetween(taken_, wanted);
   if (!changes.empty()) ROS_INFO_STREAM("reconfigured: " << changes);
   taken_ = wanted;
+  return taken_;
 }
 
 void Reconfiguration::apply(const SandConfig& wanted) {
