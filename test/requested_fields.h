@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "random_edit.h"
+#include "random_material.h"
 #include "random_scene.h"
 
 namespace shallow_sand {
@@ -31,7 +32,7 @@ inline void takeOver(const Fields& fields, const std::vector<Window>& windows, c
 inline void disturb(std::mt19937& random, const RandomScene& scene, Simulator& simulator,
                     std::vector<std::size_t>& bodies, std::vector<Snapshot>& kept) {
   const double spacing = scene.sand.parameters.grid.spacing;
-  switch (random() % 8) {
+  switch (random() % 10) {
     case 0:
     case 1:
       simulator.edit(randomEdit(random, simulator.grid()));
@@ -63,6 +64,12 @@ inline void disturb(std::mt19937& random, const RandomScene& scene, Simulator& s
       // Bodies may have come since.
       if (kept.empty() || (kept[0].fields.load.empty() != simulator.fields().load.empty())) return;
       simulator.restore(kept[0]);
+      return;
+    case 7:
+      simulator.setMaterial(otherMaterial(random, simulator, scene.sand.material));
+      return;
+    case 8:
+      simulator.setGravity(otherGravity(random));
       return;
     default:
       return;

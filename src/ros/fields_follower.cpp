@@ -1,5 +1,6 @@
 #include "shallow_sand/ros/fields_follower.h"
 
+#include <algorithm>
 #include <boost/make_shared.hpp>
 #include <utility>
 
@@ -9,6 +10,12 @@ namespace shallow_sand {
 FieldsFollower::FieldsFollower(const Grid& grid, double rate, Take take)
     : grid_(grid), period_(1.0 / rate), take_(std::move(take)), changed_(grid, 32, 8) {
   changed_.add(Window::all(grid));
+}
+
+void FieldsFollower::setRate(double rate) {
+  period_ = ros::WallDuration(1.0 / rate);
+  // What was to come after a long period comes after this one.
+  next_ = std::min(next_, ros::WallTime::now() + period_);
 }
 
 bool FieldsFollower::isDue() const { return awake_ && !busy_ && ros::WallTime::now() >= next_; }

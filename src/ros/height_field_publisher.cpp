@@ -27,10 +27,8 @@ HeightFieldPublisher::HeightFieldPublisher(ros::NodeHandle node, const Grid& gri
     : difference_(grid, frame, sand, with_speed),
       follower_(grid, rate,
                 [this](const FieldsChange& change, const ros::Time& stamp) { take(change, stamp); }) {
-  if (grid.cells() > kMostCellsSent) {
-    ROS_WARN_STREAM(
-        grid.cells() << " cells are more than a message can hold; ~height_field stays silent above "
-                     << kMostCellsSent);
+  if (!silence(grid).empty()) {
+    ROS_WARN_STREAM(silence(grid));
     return;
   }
   node.setCallbackQueue(&follower_.queue());
@@ -48,6 +46,12 @@ HeightFieldPublisher::HeightFieldPublisher(ros::NodeHandle node, const Grid& gri
   requests_ = node.subscribe<std_msgs::Empty>(maps_.getTopic() + "_requests", 1,
                                               [this](const std_msgs::EmptyConstPtr&) { answerRequest(); });
   follower_.start();
+}
+
+std::string HeightFieldPublisher::silence(const Grid& grid) {
+  if (grid.cells() <= kMostCellsSent) return "";
+  return "~height_field stays silent: " + std::to_string(grid.cells()) + " cells are more than " +
+         std::to_string(kMostCellsSent) + ", which a message can hold";
 }
 
 void HeightFieldPublisher::answerRequest() {

@@ -1,9 +1,16 @@
 #include <ros/ros.h>
 
+#include <iostream>
+
 #include "shallow_sand/device/passive_threads.h"
+#include "shallow_sand/ros/parameter_table.h"
 #include "shallow_sand/ros/sand_node.h"
 
 int main(int argument_count, char** arguments) {
+  if (argument_count == 2 && std::string(arguments[1]) == "--parameters") {
+    std::cout << shallow_sand::parameterMarkdown();
+    return 0;
+  }
   shallow_sand::waitPassively(arguments);
   ros::init(argument_count, arguments, "sand_node");
   // ROS shuts its log down with the last handle; this one outlives the node, so that its end can be told.

@@ -3,9 +3,10 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <sstream>
+#include <type_traits>
 
-#include "shallow_sand/ros/conversions.h"
+#include "shallow_sand/ros/nearest_name.h"
+#include "shallow_sand/ros/parameter_table.h"
 #include "shallow_sand/scene/mesh_file.h"
 
 namespace shallow_sand {
@@ -48,32 +49,35 @@ void take(YAML::Node& parameters, const std::string& source, const std::string& 
   parameters.remove(key);
 }
 
-/// The bounds keep periods within what ros::Duration can hold.
-void takeBetween(YAML::Node& parameters, const std::string& source, const std::string& key, double low,
-                 double high, const std::string& unit, double& value) {
-  std::ostringstream expected_text;
-  expected_text << "a number of " << unit << " from " << low << " to " << high;
-  const std::string expected = expected_text.str();
-  take(parameters, source, key, expected, value);
-  if (value >= low && value <= high) return;
-  throw SceneError(source + ": " + key + ": " + std::to_string(value) + "; expected " + expected);
+/// Takes what has a place in NodeParameters.
+void takeRow(YAML::Node& yaml, const std::string& source, const ParameterRow& row,
+             NodeParameters& parameters) {
+  const auto take_to = [&](auto target) {
+    if constexpr (!std::is_same_v<decltype(target), std::monostate>)
+      take(yaml, source, row.name, row.expected, parameters.*target);
+  };
+  std::visit(take_to, row.target);
+  const auto number = std::get_if<double NodeParameters::*>(&row.target);
+  if (number != nullptr) row.require(parameters.**number);
 }
 
-void takeMeshFile(YAML::Node& parameters, const std::string& source, std::string& path) {
-  const std::string key = "mesh_file";
-  take(parameters, source, key, "the path of a file", path);
-  try {
-    if (!path.empty()) requireMeshSuffix(key, path);
-  } catch (const InvalidParameter& problem) {
-    throw SceneError(source + ": " + problem.what());
+/// Every key that is left has to be one of a scene.
+void requireSceneKeys(const YAML::Node& yaml, const std::string& source) {
+  const std::vector<std::string>& scene_keys = sceneKeys();
+  std::vector<std::string> known = scene_keys;
+  for (const ParameterRow& row : parameterTable()) known.push_back(row.name);
+  for (const auto& entry : yaml) {
+    const std::string key = entry.first.as<std::string>();
+    if (std::find(scene_keys.begin(), scene_keys.end(), key) == scene_keys.end())
+      throw SceneError(source + ": " + key + ": unknown; expected a known key, such as " +
+                       nearestName(key, known));
   }
 }
 
 /// Which links of a robot dig, and as what.
 void takeLinks(YAML::Node& parameters, const std::string& source, RobotParameters& robot) {
-  const std::string expected = "a list of patterns of link names, such as ['wheel_*']";
-  take(parameters, source, "include", expected, robot.links.include);
-  take(parameters, source, "exclude", expected, robot.links.exclude);
+  take(parameters, source, "include", parameterRow("include").expected, robot.links.include);
+  take(parameters, source, "exclude", parameterRow("exclude").expected, robot.links.exclude);
   if (!parameters["shapes"]) return;
   robot.shapes = readLinkShapes(parameters["shapes"], source);
   parameters.remove("shapes");
@@ -89,7 +93,7 @@ RobotParameters readRobot(YAML::Node robot, const std::string& source) {
   RobotParameters parameters;
   take(robot, source, "description", "the name of a parameter", parameters.description);
   take(robot, source, "name", "a text", parameters.name);
-  take(robot, source, "tf_prefix", "a text", parameters.tf_prefix);
+  take(robot, source, "tf_prefix", parameterRow("tf_prefix").expected, parameters.tf_prefix);
   takeLinks(robot, source, parameters);
   for (const auto& unknown : robot) {
     throw SceneError(source + ": " + unknown.first.as<std::string>() +
@@ -116,11 +120,12 @@ std::vector<RobotParameters> readRobots(const YAML::Node& list, const std::strin
 /// The robots of ~robots, or the one that the parameters beside it describe.
 std::vector<RobotParameters> takeRobots(YAML::Node& parameters, const std::string& source) {
   RobotParameters single;
-  take(parameters, source, "robot_description", "the name of a parameter", single.description);
-  take(parameters, source, "tf_prefix", "a text", single.tf_prefix);
+  take(parameters, source, "robot_description", parameterRow("robot_description").expected,
+       single.description);
+  take(parameters, source, "tf_prefix", parameterRow("tf_prefix").expected, single.tf_prefix);
   takeLinks(parameters, source, single);
   std::vector<YAML::Node> list;
-  take(parameters, source, "robots", "a list of maps", list);
+  take(parameters, source, "robots", parameterRow("robots").expected, list);
   if (list.empty() && single.description.empty()) return {};
   if (list.empty()) return {single};
   if (!single.tf_prefix.empty() || !single.links.include.empty() || !single.links.exclude.empty() ||
@@ -144,25 +149,17 @@ NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
   }
   NodeParameters parameters;
   parameters.robots = takeRobots(yaml, source);
-  take(yaml, source, "report", "the path of a file", parameters.report);
-  take(yaml, source, "picture", "the path of a file", parameters.picture);
-  takeMeshFile(yaml, source, parameters.mesh_file);
-  takeBetween(yaml, source, "frame_rate", 0.01, 1e4, "hertz", parameters.frame_rate);
-  take(yaml, source, "paused", "true or false", parameters.paused);
-  takeBetween(yaml, source, "publish_rate", 0.01, 1e4, "hertz", parameters.publish_rate);
-  takeBetween(yaml, source, "height_field_rate", 0.01, 1e4, "hertz", parameters.height_field_rate);
-  take(yaml, source, "publish_speed", "true or false", parameters.publish_speed);
-  takeBetween(yaml, source, "mesh_cells", 100.0, kMostMarkerCells, "cells", parameters.mesh_cells);
-  // tf keeps ten seconds.
-  takeBetween(yaml, source, "tf_delay", 0.0, 5.0, "seconds", parameters.tf_delay);
-  takeBetween(yaml, source, "tf_timeout", 0.001, 1e6, "seconds", parameters.tf_timeout);
-  takeBetween(yaml, source, "max_body_speed", 1e-3, 1e6, "metres a second", parameters.max_body_speed);
-  std::string sand_frame;
-  take(yaml, source, "sand_frame", "the name of a tf frame", sand_frame);
-  std::string scene_folder;
-  take(yaml, source, "scene_folder", "the path of a folder", scene_folder);
-  parameters.scene = readScene(yaml, source, scene_folder);
-  if (!sand_frame.empty()) parameters.scene.parameters.grid.frame = sand_frame;
+  try {
+    for (const ParameterRow& row : parameterTable()) takeRow(yaml, source, row, parameters);
+    if (!parameters.mesh_file.empty()) requireMeshSuffix("mesh_file", parameters.mesh_file);
+  } catch (const InvalidParameter& problem) {
+    throw SceneError(source + ": " + problem.what());
+  }
+  // What the node before this one has left there.
+  yaml.remove(kReconfigureNamespace);
+  requireSceneKeys(yaml, source);
+  parameters.scene = readScene(yaml, source, parameters.scene_folder);
+  if (!parameters.sand_frame.empty()) parameters.scene.parameters.grid.frame = parameters.sand_frame;
   return parameters;
 }
 

@@ -1,5 +1,6 @@
 #include "shallow_sand/ros/particles_publisher.h"
 
+#include <algorithm>
 #include <boost/make_shared.hpp>
 #include <memory>
 #include <utility>
@@ -14,6 +15,12 @@ ParticlesPublisher::ParticlesPublisher(ros::NodeHandle node, const Grid& grid, c
     : grid_(grid), frame_(frame), period_(1.0 / rate) {
   particles_ = node.advertise<sensor_msgs::PointCloud2>("particles", 1);
   spinner_.start();
+}
+
+void ParticlesPublisher::setRate(double rate) {
+  period_ = ros::WallDuration(1.0 / rate);
+  // What was to come after a long period comes after this one.
+  next_ = std::min(next_, ros::WallTime::now() + period_);
 }
 
 bool ParticlesPublisher::isDue() const {

@@ -289,6 +289,13 @@ void SandBodies::report(Body& body, std::uint8_t state, const std::string& probl
   }
 }
 
+void SandBodies::setFastest(double speed) {
+  max_body_speed_ = speed;
+  for (Body& body : bodies_) {
+    if (body.following) body.following->track.setFastest(speed);
+  }
+}
+
 std::vector<BodyStatus> SandBodies::status() const {
   std::vector<BodyStatus> all;
   for (const Body& body : bodies_) all.push_back(body.status);

@@ -35,6 +35,15 @@ SandConstants constantsOf(const Simulator& simulator) {
   return sandConstants(simulator.grid(), parameters.gravity, parameters.material);
 }
 
+/// Of publishers, for the size of the map.
+std::vector<std::string> silences(const Grid& grid) {
+  std::vector<std::string> silences;
+  for (const std::string& silence : {HeightFieldPublisher::silence(grid), SurfacePublisher::silence(grid)}) {
+    if (!silence.empty()) silences.push_back(silence);
+  }
+  return silences;
+}
+
 }  // namespace
 
 SandNode::SandNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
@@ -54,6 +63,9 @@ SandNode::SandNode(const ros::NodeHandle& node, const ros::NodeHandle& private_n
                parameters_.publish_rate, static_cast<std::size_t>(parameters_.mesh_cells)),
       contacts_(private_node_, parameters_.scene.depth, parameters_.scene.parameters.grid.frame,
                 parameters_.publish_rate),
+      diagnostics_(node_, private_node_, parameters_.scene.parameters.backend, simulator_,
+                   silences(simulator_.grid())),
+      reconfiguration_(private_node_, parameters_, simulator_, [this] { takeParameters(); }),
       paused_(parameters_.paused) {
   if (simulator_.parameters().grains) {
     particles_.emplace(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
@@ -76,6 +88,7 @@ void SandNode::run(const std::function<bool()>& goesOn) {
   ros::WallRate rate(parameters_.frame_rate);
   while (ros::ok() && goesOn()) {
     turn();
+    diagnostics_.publishIfDue();
     rate.sleep();
   }
   writeResults();
@@ -111,7 +124,11 @@ void SandNode::restart(const ros::Duration& duration) {
 
 void SandNode::runDueFrames(const ros::Time& now) {
   const ros::WallTime begin = ros::WallTime::now();
+  const double simulated = simulator_.time();
+  const double given_up = clock_.givenUp();
   while (clock_.due(now) > 0 && (ros::WallTime::now() - begin).toSec() < kLongestTurn) runFrame();
+  const double ran = simulator_.time() - simulated;
+  diagnostics_.noteFrame(ran + (clock_.givenUp() - given_up), ran);
   if (clock_.givenUp() - told_given_up_ < FrameClock::kMostBehind) return;
   ROS_WARN_STREAM_THROTTLE(
       10.0, "the sand left out " << clock_.givenUp() - told_given_up_
@@ -212,6 +229,14 @@ bool SandNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& r
   return true;
 }
 
+void SandNode::takeParameters() {
+  surface_.follower().setRate(parameters_.publish_rate);
+  if (particles_) particles_->setRate(parameters_.publish_rate);
+  contacts_.setRate(parameters_.publish_rate);
+  height_field_.follower().setRate(parameters_.height_field_rate);
+  bodies_.setFastest(parameters_.max_body_speed);
+}
+
 void SandNode::showBodies() {
   const ros::WallTime now = ros::WallTime::now();
   if ((now - last_bodies_).toSec() < 1.0 / parameters_.publish_rate) return;
@@ -241,7 +266,8 @@ void SandNode::handOverFields() {
 }
 
 void SandNode::publishStatus() {
-  const Ledger ledger = simulator_.ledger();
+  const SandFigures figures = simulator_.figures();
+  const Ledger& ledger = figures.ledger;
   const ros::WallTime wall = ros::WallTime::now();
   const double wall_elapsed = (wall - last_status_).toSec();
   Status status;
@@ -257,8 +283,8 @@ void SandNode::publishStatus() {
   status.steps_in_frame = static_cast<std::uint32_t>(steps_in_frame_);
   status.steps = simulator_.progress().steps;
   status.cells = static_cast<std::uint32_t>(simulator_.grid().cells());
-  status.active_cells = static_cast<std::uint32_t>(simulator_.activeCells());
-  status.max_speed = simulator_.maxSpeed();
+  status.active_cells = static_cast<std::uint32_t>(figures.active_cells);
+  status.max_speed = figures.max_speed;
   status.volume_start = ledger.start;
   status.volume_poured = ledger.poured;
   status.volume_left = ledger.left;
@@ -267,6 +293,7 @@ void SandNode::publishStatus() {
   status.body_overlap = simulator_.bodyOverlap();
   status.bodies = bodies_.status();
   status_.publish(status);
+  diagnostics_.take(status);
   last_status_ = wall;
   last_status_simulated_ = simulator_.time();
 }

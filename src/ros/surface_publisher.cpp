@@ -25,9 +25,13 @@ SurfacePublisher::SurfacePublisher(ros::NodeHandle node, const Grid& grid, const
   mesh_ = node.advertise<visualization_msgs::Marker>("mesh", 1, true);
   follower_.start();
   follower_.wake();
-  if (grid.cells() > kMostCellsShown) {
-    ROS_WARN_STREAM("~points stays silent: " << grid.cells() << " cells are more than " << kMostCellsShown);
-  }
+  if (!silence(grid).empty()) ROS_WARN_STREAM(silence(grid));
+}
+
+std::string SurfacePublisher::silence(const Grid& grid) {
+  if (grid.cells() <= kMostCellsShown) return "";
+  return "~points stays silent: " + std::to_string(grid.cells()) + " cells are more than " +
+         std::to_string(kMostCellsShown);
 }
 
 // Messages are shared: subscribers in the same process get them without a copy.
@@ -35,7 +39,7 @@ void SurfacePublisher::take(const FieldsChange& change, const ros::Time& stamp) 
   const bool is_first = fields_.depth.empty();
   apply(change, grid_, fields_);
   // Latched, so whoever comes later must find the sand as it is.
-  if (grid_.cells() <= kMostCellsShown) {
+  if (silence(grid_).empty()) {
     points_.publish(
         boost::make_shared<const sensor_msgs::PointCloud2>(toPointCloud(grid_, fields_, frame_, stamp)));
   }

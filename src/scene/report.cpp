@@ -16,9 +16,10 @@ Report makeReport(const Simulator& simulator, const std::string& scene, double w
   report.simulated = simulator.time();
   report.wall = wall;
   report.cell_updates = simulator.progress().cell_updates;
-  report.active_cells_end = simulator.activeCells();
-  report.max_speed_end = simulator.maxSpeed();
-  report.volume = simulator.ledger();
+  const SandFigures figures = simulator.figures();
+  report.active_cells_end = figures.active_cells;
+  report.max_speed_end = figures.max_speed;
+  report.volume = figures.ledger;
   report.body_overlap = simulator.bodyOverlap();
   const auto& grains = simulator.parameters().grains;
   if (grains) report.grains = static_cast<std::size_t>(GrainGrid(*grains, simulator.grid()).cells());

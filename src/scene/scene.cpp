@@ -11,6 +11,13 @@
 
 namespace shallow_sand {
 
+const std::vector<std::string>& sceneKeys() {
+  static const std::vector<std::string> keys{"grid",     "gravity", "material", "edges",  "bed",
+                                             "sand",     "pours",   "bodies",   "solver", "grains",
+                                             "duration", "backend", "threads"};
+  return keys;
+}
+
 Scene loadScene(const std::string& path) {
   std::ifstream file(path);
   if (!file || std::filesystem::is_directory(path)) {
@@ -29,8 +36,7 @@ Scene loadScene(const std::string& path) {
 
 Scene readScene(const YAML::Node& root_node, const std::string& source_name, const std::string& folder) {
   const SceneValue root(root_node, {source_name, folder});
-  root.requireMap({"grid", "gravity", "material", "edges", "bed", "sand", "pours", "bodies", "solver",
-                   "grains", "duration", "backend", "threads"});
+  root.requireMap(sceneKeys());
   Scene scene;
   scene.source = source_name;
   scene.name = source_name;

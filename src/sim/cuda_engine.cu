@@ -264,6 +264,12 @@ StepRun CudaEngine::finish() {
   }
 }
 
+void CudaEngine::setSand(const SandConstants& sand, const LocalMaterialFields& material) {
+  memory_.setSand(sand, material);
+  touch(Window::all(grid_));
+  rests_ = CudaMemory<int>(std::vector<int>{0, 1});
+}
+
 double CudaEngine::edit(const LocalRegion& region, EditOperation operation, float value) {
   ChangeSand change = memory_.changeOf(region);
   if (change.window.empty()) return 0.0;
@@ -285,6 +291,16 @@ void CudaEngine::touch(const Window& cells) {
 Fields CudaEngine::fields() {
   requestFields();
   return collectFields();
+}
+
+SandView CudaEngine::view() {
+  requestFields();
+  const Fields& f = collectFields();
+  if (f.load.empty())
+    return {f.depth.data(), f.momentum_x.data(), f.momentum_y.data(), nullptr, nullptr, nullptr, nullptr};
+  return {f.depth.data(), f.momentum_x.data(),      f.momentum_y.data(),
+          f.load.data(),  f.load_momentum_x.data(), f.load_momentum_y.data(),
+          nullptr};
 }
 
 void CudaEngine::requestFields() {

@@ -55,6 +55,17 @@ void checkMaterial(const MaterialFields& fields, Material material, const Grid& 
   check("material.dilute_layer.depth", fields.layer_depth, &Material::layer_depth);
 }
 
+/// Holds a number of a new material to what there is where a map gives it. @param unit to tell it in
+void requireUnlessMapped(const char* key, const std::vector<float>& map, double now, double wanted,
+                         double unit) {
+  if (map.empty() || wanted == now) return;
+  std::ostringstream found;
+  std::ostringstream expected;
+  found << wanted / unit;
+  expected << now / unit << " as it is, for a map gives it cell by cell";
+  throw InvalidParameter(key, found.str(), expected.str());
+}
+
 /// From one pose to another; of a rotation by nothing, roundings would make an axis.
 Eigen::AngleAxisd turnBetween(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to) {
   if (to.linear() == from.linear()) return Eigen::AngleAxisd::Identity();
@@ -143,7 +154,7 @@ class Simulator::Implementation {
 
   Implementation(const SimulatorParameters& parameters, std::vector<float> bed, std::vector<float> depth,
                  const MaterialFields& material)
-      : parameters_(parameters) {
+      : parameters_(parameters), material_fields_(material) {
     parameters_.validate();
     grid_ = parameters_.grid.grid();
     checkField("bed", bed, grid_, -std::numeric_limits<float>::infinity());
@@ -199,6 +210,33 @@ class Simulator::Implementation {
     throw InvalidParameter(key, found.str(), "a place on the grid");
   }
 
+  void setMaterial(const Material& material) {
+    material.validate();
+    const Material& now = parameters_.material;
+    requireUnlessMapped("material.friction_angle", material_fields_.friction_angle, now.friction_angle,
+                        material.friction_angle, M_PI / 180.0);
+    requireUnlessMapped("material.dilute_layer.fraction", material_fields_.layer_fraction, now.layer_fraction,
+                        material.layer_fraction, 1.0);
+    requireUnlessMapped("material.dilute_layer.depth", material_fields_.layer_depth, now.layer_depth,
+                        material.layer_depth, 1.0);
+    finish();
+    parameters_.material = material;
+    sendSand();
+  }
+
+  void setGravity(const Eigen::Vector3d& gravity) {
+    validateGravity(gravity);
+    finish();
+    parameters_.gravity = gravity;
+    sendSand();
+  }
+
+  /// Material and gravity as they are now.
+  void sendSand() {
+    engine_->setSand(sandConstants(grid_, parameters_.gravity, parameters_.material),
+                     localMaterial(parameters_.material, material_fields_, grid_));
+  }
+
   double edit(const Edit& edit) {
     edit.validate();
     finish();
@@ -223,7 +261,7 @@ class Simulator::Implementation {
     snapshot.time = time_;
     snapshot.next_step = trial_;
     snapshot.progress = progress_;
-    snapshot.ledger = ledgerOf(snapshot.fields);
+    snapshot.ledger = figures().ledger;
     snapshot.grains = grains();
     return snapshot;
   }
@@ -607,17 +645,39 @@ class Simulator::Implementation {
     return engine_->fields();
   }
 
-  Ledger ledger() { return ledgerOf(fields()); }
-
-  Ledger ledgerOf(const Fields& fields) const {
-    return {start_volume_, poured_before_ + engine_->poured(), left_before_ + engine_->left(),
-            (sum(fields.depth) + sum(fields.load)) * grid_.cellArea()};
+  SandFigures figures() {
+    finish();
+    const SandConstants sand = sandConstants(grid_, parameters_.gravity, parameters_.material);
+    const SandView view = engine_->view();
+    SandFigures figures;
+    double ground = 0.0;
+    double loads = 0.0;
+    const auto isMoving = [&](float depth, float momentum_x, float momentum_y) {
+      if (momentum_x == 0.0f && momentum_y == 0.0f) return false;
+      const double inverse = inverseDepth(depth, sand);
+      figures.max_speed = std::max(figures.max_speed, inverse * std::hypot(momentum_x, momentum_y));
+      return true;
+    };
+    for (std::size_t k = 0; k < grid_.cells(); ++k) {
+      const bool swapped = view.cover != nullptr && view.cover[k] == Cover::touching;
+      ground += swapped ? view.load[k] : view.depth[k];
+      bool moves = isMoving(view.depth[k], view.momentum_x[k], view.momentum_y[k]);
+      if (view.load != nullptr) {
+        loads += swapped ? view.depth[k] : view.load[k];
+        moves |= isMoving(view.load[k], view.load_momentum_x[k], view.load_momentum_y[k]);
+      }
+      figures.active_cells += moves ? 1 : 0;
+    }
+    figures.ledger = {start_volume_, poured_before_ + engine_->poured(), left_before_ + engine_->left(),
+                      (ground + loads) * grid_.cellArea()};
+    return figures;
   }
 
   static constexpr double kLongestWayBetweenPlacements = 0.25;  // of a body [cells]
   static constexpr std::size_t kMostPlacements = 64;            // in a run of steps
 
   SimulatorParameters parameters_;
+  MaterialFields material_fields_;  // maps that were given at the start
   Grid grid_;
   ChosenBackend chosen_;
   std::unique_ptr<Engine> engine_;
@@ -665,6 +725,8 @@ void Simulator::placeBody(std::size_t body, const Eigen::Isometry3d& pose) {
 void Simulator::removeBody(std::size_t body) { implementation_->removeBody(body); }
 void Simulator::addPour(const Pour& pour) { implementation_->addPour(pour); }
 double Simulator::edit(const Edit& edit) { return implementation_->edit(edit); }
+void Simulator::setMaterial(const Material& material) { implementation_->setMaterial(material); }
+void Simulator::setGravity(const Eigen::Vector3d& gravity) { implementation_->setGravity(gravity); }
 Snapshot Simulator::snapshot() const { return implementation_->snapshot(); }
 void Simulator::restore(const Snapshot& snapshot) { implementation_->restore(snapshot); }
 void Simulator::advance(double duration) {
@@ -691,7 +753,10 @@ const Fields& Simulator::collectFields() { return implementation_->engine_->coll
 std::vector<Window> Simulator::takeChanges() { return implementation_->engine_->takeChanges(); }
 Fields Simulator::fields() const { return implementation_->fields(); }
 Grains Simulator::grains() const { return implementation_->grains(); }
-Ledger Simulator::ledger() const { return implementation_->ledger(); }
+SandFigures Simulator::figures() const { return implementation_->figures(); }
+Ledger Simulator::ledger() const { return figures().ledger; }
+double Simulator::maxSpeed() const { return figures().max_speed; }
+std::size_t Simulator::activeCells() const { return figures().active_cells; }
 const Progress& Simulator::progress() const {
   implementation_->finish();
   return implementation_->progress_;
@@ -699,32 +764,6 @@ const Progress& Simulator::progress() const {
 double Simulator::bodyOverlap() const { return implementation_->bodyOverlap(); }
 std::vector<SandContact> Simulator::contacts(const Fields& now) const {
   return implementation_->contacts(now);
-}
-
-double Simulator::maxSpeed() const {
-  const SandConstants sand = sandConstants(grid(), parameters().gravity, parameters().material);
-  const Fields f = implementation_->fields();
-  double fastest = 0.0;
-  const auto look = [&](const std::vector<float>& depth, const std::vector<float>& momentum_x,
-                        const std::vector<float>& momentum_y) {
-    for (std::size_t k = 0; k < depth.size(); ++k) {
-      const double inverse = inverseDepth(depth[k], sand);
-      fastest = std::max(fastest, inverse * std::hypot(momentum_x[k], momentum_y[k]));
-    }
-  };
-  look(f.depth, f.momentum_x, f.momentum_y);
-  look(f.load, f.load_momentum_x, f.load_momentum_y);
-  return fastest;
-}
-
-std::size_t Simulator::activeCells() const {
-  const Fields f = implementation_->fields();
-  std::size_t active = 0;
-  for (std::size_t k = 0; k < f.depth.size(); ++k) {
-    const bool load_moves = !f.load.empty() && (f.load_momentum_x[k] != 0.0f || f.load_momentum_y[k] != 0.0f);
-    active += load_moves || f.momentum_x[k] != 0.0f || f.momentum_y[k] != 0.0f ? 1 : 0;
-  }
-  return active;
 }
 
 }  // namespace shallow_sand

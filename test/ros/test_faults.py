@@ -74,9 +74,10 @@ class Faults(unittest.TestCase):
     def test_bad_parameters_end_the_node(self):
         self.expect_refusal("angle", {"material": {"friction_angle": 95.0}}, "material.friction_angle", "95")
         self.expect_refusal("typo", {"sands": []}, "sands", "sand")
+        self.expect_refusal("nearest", {"publish_rates": 5.0}, "publish_rates", "unknown", "such as publish_rate")
         self.expect_refusal("rate", {"frame_rate": -1.0}, "frame_rate", "hertz")
         self.expect_refusal("delay", {"tf_delay": 60.0}, "tf_delay", "seconds", "60")
-        self.expect_refusal("mesh_cells", {"mesh_cells": 1e9}, "mesh_cells", "cells", "1e+06")
+        self.expect_refusal("mesh_cells", {"mesh_cells": 1e9}, "mesh_cells", "cells", "1e6")
         self.expect_refusal("mesh_file", {"mesh_file": "sand.obj"}, "mesh_file", "sand.obj", ".stl or .ply")
         self.expect_refusal("pattern", {"include": "bucket"}, "include", "bucket", "list of patterns")
         self.expect_refusal("no_list", {"robots": "r2d2"}, "robots", "r2d2", "list of maps")

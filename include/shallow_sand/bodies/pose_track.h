@@ -58,6 +58,7 @@ class PoseTrack {
   /// What `poseAt` throws comes through, and leaves the track as it was.
   Movement follow(const FrameTimes& frame, double newest, const PoseSource& poseAt);
 
+  void setFastest(double fastest) { fastest_ = fastest; }  ///< see above
   /// The clock starts anew: the body is put at its next pose.
   void restart() { reached_.reset(); }
 

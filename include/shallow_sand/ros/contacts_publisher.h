@@ -19,6 +19,8 @@ class ContactsPublisher {
   ContactsPublisher(ros::NodeHandle node, const std::vector<float>& start, const std::string& frame,
                     double rate);
 
+  /// From now on at most so often [Hz].
+  void setRate(double rate) { period_ = ros::WallDuration(1.0 / rate); }
   /// Whether figures are wanted now.
   bool isDue() const;
   void send(const Simulator& simulator, const ros::Time& stamp);

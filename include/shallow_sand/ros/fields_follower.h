@@ -31,7 +31,9 @@ class FieldsFollower {
   /// From now on fields are wanted. From any thread.
   void wake() { awake_ = true; }
 
-  /// The rest is for the sand's thread. Whether fields are wanted now.
+  /// The rest is for the sand's thread. From now on. [Hz]
+  void setRate(double rate);
+  /// Whether fields are wanted now.
   bool isDue() const;
   /// Fields have changed in these windows.
   void note(const std::vector<Window>& changes);

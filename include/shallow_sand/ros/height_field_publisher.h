@@ -26,6 +26,8 @@ class HeightFieldPublisher {
                        const SandConstants& sand, double rate, bool with_speed);
   ~HeightFieldPublisher() { follower_.stop(); }
 
+  /// Why it stays silent on such a map; empty if it does not.
+  static std::string silence(const Grid& grid);
   /// What the sand's thread hands fields to.
   FieldsFollower& follower() { return follower_; }
 

@@ -20,7 +20,7 @@ struct RobotParameters {
   LinkShapes shapes;      ///< and what stands for them
 };
 
-/// All private parameters of sand_node.
+/// All private parameters of sand_node; parameterTable has their bounds.
 struct NodeParameters {
   Scene scene;                          ///< from the keys of a scene file
   std::vector<RobotParameters> robots;  ///< none if ~robot_description is empty
@@ -33,6 +33,8 @@ struct NodeParameters {
   double tf_timeout = 1.0;       ///< older poses are stale [s]
   double max_body_speed = 10.0;  ///< of a body's farthest point; what is faster is a jump [m/s]
   double mesh_cells = 1e6;       ///< most cells that ~mesh shows; a larger map is shown by blocks of cells
+  std::string sand_frame;        ///< instead of the scene's grid.frame, unless empty
+  std::string scene_folder;      ///< that paths in the scene start from; empty: they must be absolute
   std::string report;            ///< file for the figures at the end; empty: none
   std::string picture;           ///< file for a shaded relief at the end; empty: none
   std::string mesh_file;         ///< .stl or .ply for the surface at the end; empty: none

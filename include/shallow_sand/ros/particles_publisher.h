@@ -20,7 +20,9 @@ class ParticlesPublisher {
   ParticlesPublisher(ros::NodeHandle node, const Grid& grid, const std::string& frame, double rate);
   ~ParticlesPublisher() { spinner_.stop(); }
 
-  /// The rest is for the sand's thread. Whether grains are wanted now.
+  /// The rest is for the sand's thread. From now on. [Hz]
+  void setRate(double rate);
+  /// Whether grains are wanted now.
   bool isDue() const;
   /// @param fields of the same time
   void send(Grains grains, Fields fields, const ros::Time& stamp);

@@ -81,6 +81,9 @@ class SandBodies {
   /// all others stay where they are. @throws InvalidParameter if it does not fit; nothing changes then
   void restore(const Snapshot& snapshot);
 
+  /// ~max_body_speed from now on. [m/s]
+  void setFastest(double speed);
+
   std::vector<BodyStatus> status() const;
   /// Those of the scene and those that services have added, as soon as they have a pose; not robots' links.
   std::vector<ShownBody> shown() const;

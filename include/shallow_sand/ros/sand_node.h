@@ -14,11 +14,13 @@
 #include "shallow_sand/ros/body_markers.h"
 #include "shallow_sand/ros/body_services.h"
 #include "shallow_sand/ros/contacts_publisher.h"
+#include "shallow_sand/ros/diagnostics.h"
 #include "shallow_sand/ros/frame_clock.h"
 #include "shallow_sand/ros/height_field_publisher.h"
 #include "shallow_sand/ros/node_parameters.h"
 #include "shallow_sand/ros/particles_publisher.h"
 #include "shallow_sand/ros/pour_topic.h"
+#include "shallow_sand/ros/reconfiguration.h"
 #include "shallow_sand/ros/robot.h"
 #include "shallow_sand/ros/sand_bodies.h"
 #include "shallow_sand/ros/surface_publisher.h"
@@ -28,7 +30,8 @@
 namespace shallow_sand {
 
 /// The node. Its contract:
-/// - reads NodeParameters once; a bad one ends it with exit code 2 and one line;
+/// - reads NodeParameters once; a bad one ends it with exit code 2 and one line; some of them, and material
+/// and gravity, can be changed later through ~reconfigure;
 /// - bodies: the scene's, links of the robots in ~robots by their tf frames, and those of ~add_body; a
 /// description may come later, tf may stop: the log says what is missing and the node goes on;
 /// - runs with ROS time (`use_sim_time` too), ~tf_delay behind it, so that the poses that the sand needs have
@@ -43,6 +46,7 @@ namespace shallow_sand {
 /// and, while somebody listens, ~contacts and, if the scene has grains, ~particles;
 /// - publishes ~status (latched, once a second) and ~bodies (latched, when one has moved, at most at
 /// ~publish_rate);
+/// - publishes /diagnostics, once a second of the wall clock;
 /// - takes sand from and for ~pour, and lets bodies be dragged by interactive markers under ~body_handles;
 /// - at the end writes ~report, ~picture and ~mesh_file.
 class SandNode {
@@ -79,6 +83,8 @@ class SandNode {
   void requestFields();
   /// Gives those that were requested to those who wait for them.
   void handOverFields();
+  /// ~publish_rate, ~height_field_rate and ~max_body_speed are others.
+  void takeParameters();
   void showBodies();
   void publishStatus();
   void writeResults() const;
@@ -100,6 +106,8 @@ class SandNode {
   SurfacePublisher surface_;
   ContactsPublisher contacts_;
   std::optional<ParticlesPublisher> particles_;  ///< if the scene has grains
+  Diagnostics diagnostics_;
+  Reconfiguration reconfiguration_;
   ros::Publisher status_;
   ros::ServiceServer pause_;
   ros::ServiceServer step_;

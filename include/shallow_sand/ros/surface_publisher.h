@@ -17,6 +17,8 @@ class SurfacePublisher {
                    std::size_t most_mesh_cells);
   ~SurfacePublisher() { follower_.stop(); }
 
+  /// Why ~points stays silent on such a map; empty if it does not.
+  static std::string silence(const Grid& grid);
   /// What the sand's thread hands fields to.
   FieldsFollower& follower() { return follower_; }
 

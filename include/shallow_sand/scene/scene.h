@@ -52,6 +52,9 @@ struct Scene {
   double duration = 10.0;  ///< [s], not negative
 };
 
+/// The keys that a scene may have.
+const std::vector<std::string>& sceneKeys();
+
 /// Reads a scene file. @throws SceneError
 Scene loadScene(const std::string& path);
 

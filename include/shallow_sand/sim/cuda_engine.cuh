@@ -27,8 +27,10 @@ class CudaEngine : public Engine {
   void expectSand(const LocalRegion& region) override;
   void start(const StepRun& run, std::vector<Placement> placements) override;
   StepRun finish() override;
+  void setSand(const SandConstants& sand, const LocalMaterialFields& material) override;
   double edit(const LocalRegion& region, EditOperation operation, float value) override;
   Fields fields() override;
+  SandView view() override;
   void requestFields() override;
   const Fields& collectFields() override;
   std::vector<Window> takeChanges() override { return courier_.takeChanges(); }

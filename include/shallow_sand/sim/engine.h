@@ -13,10 +13,25 @@
 #include "shallow_sand/sim/simulator.h"
 #include "shallow_sand/sim/step_run.h"
 #include "shallow_sand/solver/change_sand.h"
+#include "shallow_sand/solver/cover.h"
 #include "shallow_sand/solver/sand_constants.h"
 #include "shallow_sand/solver/step.h"
 
 namespace shallow_sand {
+
+/// The sand where it lies, a value a cell each, laid out as in Fields; those of loads and cover are null as
+/// long as there are no bodies.
+struct SandView {
+  const float* depth;
+  const float* momentum_x;
+  const float* momentum_y;
+  const float* load;
+  const float* load_momentum_x;
+  const float* load_momentum_y;
+  /// Where it is Cover::touching, the six above tell of the load as the sand and the other way round; may be
+  /// null.
+  const Cover* cover;
+};
 
 /// The fields on their backend, and what computes with them; it knows no motion.
 class Engine {
@@ -39,10 +54,16 @@ class Engine {
   virtual void start(const StepRun& run, std::vector<Placement> placements) = 0;
   /// Waits for the run that was started. Returns where it came to.
   virtual StepRun finish() = 0;
+  /// From now on the sand is of this kind, in this gravity: all of it wakes up. The material's lists are as
+  /// long as those that the engine was made with.
+  virtual void setSand(const SandConstants& sand, const LocalMaterialFields& material) = 0;
   /// Changes the sand at once. Returns by how much it grew [m³].
   virtual double edit(const LocalRegion& region, EditOperation operation, float value) = 0;
 
   virtual Fields fields() = 0;
+  /// The fields without a copy where the host can read them, else a request and its answer; valid until
+  /// anything else is asked for.
+  virtual SandView view() = 0;
   /// The fields as they are now leave for the host, which has them when they are collected; a run may be
   /// started in between.
   virtual void requestFields() = 0;

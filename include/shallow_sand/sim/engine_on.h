@@ -94,6 +94,12 @@ class EngineOn : public SteppedEngine {
     apply(pour.change, pour.taken);
   }
 
+  void setSand(const SandConstants& sand, const LocalMaterialFields& material) override {
+    memory_.setSand(sand, material);
+    stepper_.touch(Window::all(grid_));
+    watched_.assign(windows_.size(), Watched{});
+  }
+
   double edit(const LocalRegion& region, EditOperation operation, float value) override {
     ChangeSand change = memory_.changeOf(region);
     change.operation = operation;
@@ -116,6 +122,7 @@ class EngineOn : public SteppedEngine {
     memory_.swapWhereTouching(memory_.downloaded(c.cover), fields);
     return fields;
   }
+  SandView view() override { return memory_.view(); }
   void requestFields() override {
     const std::vector<Window> changed = changed_.take();
     const bool has_loads = !memory_.contacts.empty();

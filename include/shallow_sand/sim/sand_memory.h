@@ -94,6 +94,14 @@ class SandMemory {
         layer_depth(uploaded(start.material.layer_depth)),
         left_over_edges(2 * static_cast<std::size_t>(grid.columns + grid.rows), 0.0) {}
 
+  /// @param material lists as long as those at the start
+  void setSand(const SandConstants& constants, const LocalMaterialFields& material) {
+    sand = constants;
+    set(repose_rise, material.repose_rise);
+    set(layer_fraction, material.layer_fraction);
+    set(layer_depth, material.layer_depth);
+  }
+
   void addBody(const DistanceField& field) {
     Memory<float> distance = uploaded(field.distance);
     if (contacts.empty()) contacts.emplace_back(bed);
@@ -189,6 +197,24 @@ class SandMemory {
     contacts.clear();
     contacts.emplace_back(bed);
     if (!snapshot.windows.empty()) restoreContacts(layers, snapshot, cover);
+  }
+
+  /// For memory that the host can read.
+  SandView view() const {
+    SandView view{state.depth.data(),
+                  state.momentum_x.data(),
+                  state.momentum_y.data(),
+                  nullptr,
+                  nullptr,
+                  nullptr,
+                  nullptr};
+    if (contacts.empty()) return view;
+    const Contacts& c = contacts.front();
+    view.load = c.hidden.depth.data();
+    view.load_momentum_x = c.hidden.momentum_x.data();
+    view.load_momentum_y = c.hidden.momentum_y.data();
+    view.cover = c.cover.data();
+    return view;
   }
 
   /// Brings the cells of a window up to date in fields that were taken before. On the host.

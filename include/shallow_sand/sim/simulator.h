@@ -53,6 +53,13 @@ struct Ledger {
   double error() const;
 };
 
+/// What the sand does now.
+struct SandFigures {
+  Ledger ledger;
+  double max_speed = 0.0;        ///< [m/s]
+  std::size_t active_cells = 0;  ///< cells whose sand moves
+};
+
 /// What the last rays found, one value a cell each; all empty if no body is over the map. A run goes on from
 /// it, for what lies on bodies depends on where they were.
 struct ContactSnapshot {
@@ -92,7 +99,7 @@ class Simulator {
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
 
-  const SimulatorParameters& parameters() const;
+  const SimulatorParameters& parameters() const;  ///< as they are now
   const Grid& grid() const;
   Backend backend() const;  ///< the one in use: cpu or cuda
   int threads() const;      ///< of the CPU backend; 1 on the GPU
@@ -116,9 +123,18 @@ class Simulator {
   /// left. @throws InvalidParameter also if the region lies outside of the grid
   double edit(const Edit& edit);
 
+  /// From now on the sand is of this kind; all of it wakes up, and whatever no longer holds slides. The sand
+  /// goes on as one that was built with the material and took over this one's snapshot. What a map gave at
+  /// the start stays. @throws InvalidParameter also for a value other than the present one where a map gives
+  /// it
+  void setMaterial(const Material& material);
+  /// The same for gravity, in the grid's frame [m/s²]. @throws InvalidParameter
+  void setGravity(const Eigen::Vector3d& gravity);
+
   Snapshot snapshot() const;
   /// Goes on from a snapshot of a simulator that was built from the same parameters, pours and bodies: with
-  /// the same bits. @throws InvalidParameter if it does not fit
+  /// the same bits. Parameters stay those of this simulator, whatever they were when the snapshot was taken.
+  /// @throws InvalidParameter if it does not fit
   void restore(const Snapshot& snapshot);
 
   /// Runs the sand on by `duration` [s] exactly. @throws InvalidParameter when negative, not finite, or when
@@ -145,6 +161,9 @@ class Simulator {
   /// The grains as they are now, which go on once at the end of each advance; none without
   /// SimulatorParameters::grains. What of them is seen, and where, grainCloud tells of any copy.
   Grains grains() const;
+  /// All at once: on the CPU it reads the cells where they lie, on the GPU it is a request. The three that
+  /// follow do the same for one of them.
+  SandFigures figures() const;
   Ledger ledger() const;
   const Progress& progress() const;
   double maxSpeed() const;          ///< of the sand now [m/s]

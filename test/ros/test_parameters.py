@@ -1,0 +1,128 @@
+#!/usr/bin/python3
+"""Parameters that change while the node runs, and what /diagnostics says of it."""
+import math
+import time
+import unittest
+
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from dynamic_reconfigure.client import Client
+from sand_test import SCENE, Place, RunningNode, World, link, robot, wait_for_depth
+
+# A cone of 30 degrees in the middle of the map.
+CONE = dict(SCENE, sand=[{"cone": {"center": [0.5, 0.5], "height": 0.2, "slope_angle": 30.0}}],
+            material={"friction_angle": 35.0, "dilute_layer": {"depth": math.inf}}, gravity=[0.0, 0.0, -9.0],
+            robot_description="", publish_rate=8.0)
+
+
+class Diagnosed:
+    """What /diagnostics said last of each part of a node."""
+
+    def __init__(self, name):
+        self.last = {}
+        self.prefix = name.strip("/") + ": "
+        self.subscriber = rospy.Subscriber("/diagnostics", DiagnosticArray, self.take)
+
+    def take(self, message):
+        for status in message.status:
+            if status.name.startswith(self.prefix) and status.message != "Node starting up":
+                self.last[status.name[len(self.prefix):]] = status
+
+    def wait(self, part, level, *words, limit=15.0):
+        deadline = time.monotonic() + limit
+        while time.monotonic() < deadline:
+            status = self.last.get(part)
+            if status is not None and status.level == level and all(word in status.message for word in words):
+                return status
+            rospy.rostime.wallsleep(0.05)
+        raise AssertionError(f"{part}: not {level!r} with {words} within {limit} s; the last was {self.last.get(part)}")
+
+
+class Parameters(unittest.TestCase):
+    def reconfigure(self, node):
+        return Client(node.name + "/reconfigure", timeout=10.0)
+
+    def test_starts_with_its_parameters_not_with_the_defaults_nor_with_what_was_left(self):
+        parameters = dict(CONE, reconfigure={"friction_angle": 3.0, "max_body_speed": 1.0})
+        with World({}), RunningNode("started", parameters) as node:
+            start = self.reconfigure(node).get_configuration(timeout=10.0)
+            self.assertAlmostEqual(start["friction_angle"], 35.0, places=9)
+            self.assertEqual(start["layer_depth"], math.inf)
+            self.assertEqual([start["gravity_x"], start["gravity_y"], start["gravity_z"]], [0.0, 0.0, -9.0])
+            self.assertEqual([start["publish_rate"], start["height_field_rate"], start["max_body_speed"]], [8.0, 10.0, 10.0])
+            node.assert_well(self)
+            self.assertEqual(node.error_lines(), [])
+
+    def test_sand_flows_when_friction_drops(self):
+        with World({}), RunningNode("loose", CONE) as node:
+            client = self.reconfigure(node)
+            rested = node.status(lambda status: status.simulated_time > 1.0)
+            self.assertEqual(rested.active_cells, 0)
+            self.assertEqual(client.update_configuration({"friction_angle": 15.0})["friction_angle"], 15.0)
+            # The top stood at 0.2 m.
+            wait_for_depth(node, 0.5, 0.5, lambda depth: depth < 0.14)
+            after = node.status(lambda status: status.active_cells == 0)
+            self.assertAlmostEqual(after.volume / rested.volume, 1.0, places=6)
+            # Gravity that leans by 45 degrees brings it to the wall.
+            client.update_configuration({"gravity_x": 7.0, "gravity_z": -7.0})
+            wait_for_depth(node, 0.97, 0.5, lambda depth: depth > 0.1)
+            node.assert_well(self)
+            self.assertEqual(node.error_lines(), [])
+
+    def test_what_is_refused_stays_as_it_was_and_is_told_in_one_line(self):
+        with World({}), RunningNode("refusing", CONE) as node:
+            client = self.reconfigure(node)
+            before = client.get_configuration(timeout=10.0)
+            for change, word in (({"friction_angle": 90.0}, "friction_angle"), ({"layer_fraction": 0.0}, "fraction"),
+                                 ({"layer_depth": 0.0}, "dilute_layer.depth"), ({"gravity_z": 0.0}, "gravity"),
+                                 ({"publish_rate": math.nan}, "publish_rate"),
+                                 # One bad value among good ones.
+                                 ({"friction_angle": 20.0, "max_body_speed": math.nan}, "max_body_speed")):
+                answer = client.update_configuration(change)
+                for name, value in before.items():
+                    if name != "groups":
+                        self.assertEqual(answer[name], value, (change, name))
+                self.assertEqual(len(node.wait_for_error("reconfigure:", word)), 1, node.error_lines())
+            self.assertEqual(len(node.error_lines()), 6, node.error_lines())
+            # Friction is what it was: nothing slides.
+            time_now = node.status().simulated_time
+            self.assertEqual(node.status(lambda status: status.simulated_time > time_now).active_cells, 0)
+            node.assert_well(self)
+
+    def test_a_slow_rate_becomes_a_fast_one_at_once(self):
+        # A message in 100 s.
+        with World({}), RunningNode("slow", dict(CONE, publish_rate=0.01)) as node:
+            wait_for_depth(node, 0.5, 0.5, lambda depth: depth > 0.1)
+            self.reconfigure(node).update_configuration({"friction_angle": 15.0, "publish_rate": 50.0})
+            wait_for_depth(node, 0.5, 0.5, lambda depth: depth < 0.14)
+
+    def test_diagnostics_follow_tf(self):
+        rospy.set_param("/robot_description", robot("arm", link("shovel"), link("wrist")))
+        frames = {"shovel": lambda _: Place(0.3, 0.3, 0.5), "wrist": lambda _: Place(0.7, 0.7, 0.5)}
+        diagnosed = Diagnosed("diagnosed")
+        with World(frames) as world, RunningNode("diagnosed", SCENE):
+            diagnosed.wait("bodies", DiagnosticStatus.OK, "2 bodies")
+            diagnosed.wait("solver", DiagnosticStatus.OK, "keeps up")
+            diagnosed.wait("volume", DiagnosticStatus.OK)
+            diagnosed.wait("backend", DiagnosticStatus.OK, "CPU")
+            diagnosed.wait("publishers", DiagnosticStatus.OK)
+            world.frames["shovel"] = lambda _: None
+            lost = diagnosed.wait("bodies", DiagnosticStatus.WARN, "1 of 2", "shovel STALE")
+            self.assertNotIn("wrist", lost.message)
+            world.frames["shovel"] = frames["shovel"]
+            diagnosed.wait("bodies", DiagnosticStatus.OK, "2 bodies")
+        rospy.delete_param("/robot_description")
+
+    def test_diagnostics_tell_of_time_that_does_not_run(self):
+        diagnosed = Diagnosed("waiting")
+        with RunningNode("waiting", CONE):
+            diagnosed.wait("solver", DiagnosticStatus.WARN, "/clock")
+            with World({}):
+                diagnosed.wait("solver", DiagnosticStatus.OK, "keeps up")
+            diagnosed.wait("solver", DiagnosticStatus.OK, "stands still")
+
+
+if __name__ == "__main__":
+    rospy.init_node("test_parameters")
+    rostest.rosrun("shallow_sand", "parameters", Parameters)
