@@ -5,6 +5,8 @@
 namespace shallow_sand {
 namespace {
 
+const ros::WallDuration kPeriod(1.0);
+
 #ifdef SHALLOW_SAND_WITH_CUDA
 constexpr bool kHasCuda = true;
 #else
@@ -14,7 +16,8 @@ constexpr bool kHasCuda = false;
 }  // namespace
 
 Diagnostics::Diagnostics(Backend wanted, const Simulator& simulator,
-                         const std::vector<std::string>& silences) {
+                         const std::vector<std::string>& silences)
+    : next_(ros::WallTime::now() + kPeriod) {
   updater_.setHardwareID("none");
   add("solver", [this] { return judgeSolver(pace_, status_); });
   add("volume", [this] { return judgeVolume(status_); });
@@ -42,7 +45,7 @@ void Diagnostics::noteFrame(double asked, double simulated) {
 void Diagnostics::publishIfDue() {
   const ros::WallTime now = ros::WallTime::now();
   if (now < next_) return;
-  next_ = now + ros::WallDuration(1.0);
+  next_ = now + kPeriod;
   updater_.force_update();
   pace_.asked = pace_.simulated = 0.0;
 }
