@@ -15,8 +15,7 @@ constexpr bool kHasCuda = false;
 
 }  // namespace
 
-Diagnostics::Diagnostics(Backend wanted, const Simulator& simulator,
-                         const std::vector<std::string>& silences)
+Diagnostics::Diagnostics(Backend wanted, const Simulator& simulator, const std::vector<std::string>& silences)
     : next_(ros::WallTime::now() + kPeriod) {
   updater_.setHardwareID("none");
   add("solver", [this] { return judgeSolver(pace_, status_); });
