@@ -5,6 +5,8 @@
 namespace shallow_sand {
 namespace {
 
+const ros::WallDuration kPeriod(1.0);
+
 #ifdef SHALLOW_SAND_WITH_CUDA
 constexpr bool kHasCuda = true;
 #else
@@ -15,7 +17,8 @@ constexpr bool kHasCuda = false;
 
 Diagnostics::Diagnostics(const ros::NodeHandle& node, const ros::NodeHandle& private_node, Backend wanted,
                          const Simulator& simulator, const std::vector<std::string>& silences)
-    : updater_(node, private_node, private_node.getNamespace()) {
+    : next_(ros::WallTime::now() + kPeriod),
+      updater_(node, private_node, private_node.getNamespace()) {
   updater_.setHardwareID("none");
   add("solver", [this] { return judgeSolver(pace_, status_); });
   add("volume", [this] { return judgeVolume(status_); });
@@ -43,7 +46,7 @@ void Diagnostics::noteFrame(double asked, double simulated) {
 void Diagnostics::publishIfDue() {
   const ros::WallTime now = ros::WallTime::now();
   if (now < next_) return;
-  next_ = now + ros::WallDuration(1.0);
+  next_ = now + kPeriod;
   updater_.force_update();
   pace_.asked = pace_.simulated = 0.0;
 }

@@ -267,7 +267,6 @@ StepRun CudaEngine::finish() {
 void CudaEngine::setSand(const SandConstants& sand, const LocalMaterialFields& material) {
   memory_.setSand(sand, material);
   touch(Window::all(grid_));
-  rests_ = CudaMemory<int>(std::vector<int>{0, 1});
 }
 
 double CudaEngine::edit(const LocalRegion& region, EditOperation operation, float value) {

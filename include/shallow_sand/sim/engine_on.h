@@ -97,7 +97,6 @@ class EngineOn : public SteppedEngine {
   void setSand(const SandConstants& sand, const LocalMaterialFields& material) override {
     memory_.setSand(sand, material);
     stepper_.touch(Window::all(grid_));
-    watched_.assign(windows_.size(), Watched{});
   }
 
   double edit(const LocalRegion& region, EditOperation operation, float value) override {
