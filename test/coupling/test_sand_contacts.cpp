@@ -129,15 +129,16 @@ TriangleMesh wedge(double length, double width) {
   return mesh;
 }
 
-/// What is a plane around a body is the same plane under it.
+/// What is a plane around a body is the same plane under it, also where the body comes out of the sand.
 TEST(SandContacts, PlaneSurfaceGoesOnUnderABody) {
   std::mt19937 random = seededGenerator();
   for (int trial = 0; trial < 16; ++trial) {
     const double spacing = 0.025;
     const double length = uniform(random, 0.2, 0.4);
     const Eigen::Vector2d middle(0.5, 0.5);
+    const double depth = uniform(random, -0.02, 0.05);
     const PlacedField body{fieldOf(wedge(length, uniform(random, 0.2, 0.4)), spacing),
-                           poseOf(middle, kBuiltSurface - 0.2 + 0.5 * kBlockHeight,
+                           poseOf(middle, kBuiltSurface - depth + 0.5 * kBlockHeight,
                                   turned(uniform(random, -M_PI, M_PI), Eigen::Vector3d::UnitZ()))};
     const double slope_x = uniform(random, -0.3, 0.3);
     const Eigen::Vector2d slope(slope_x, uniform(random, -0.3, 0.3));
@@ -150,11 +151,11 @@ TEST(SandContacts, PlaneSurfaceGoesOnUnderABody) {
     for (int j = 0; j < grid.rows; ++j) {
       for (int i = 0; i < grid.columns; ++i) {
         const double clearance = sand.clearance[grid.index(i, j)];
-        if (std::isfinite(clearance)) expected += surface(grid.x(i), grid.y(j)) - clearance;
+        if (std::isfinite(clearance)) expected += std::max(surface(grid.x(i), grid.y(j)) - clearance, 0.0);
       }
     }
     expected *= grid.cellArea();
-    EXPECT_NEAR(contactOf(sand.simulator).submerged_volume, expected, 1e-5 * expected);
+    EXPECT_NEAR(contactOf(sand.simulator).submerged_volume, expected, 1e-5 * length * length * 0.1);
   }
 }
 
@@ -322,6 +323,28 @@ TEST(SandContacts, OfAPlateInTheAirAreWhatItCarries) {
     EXPECT_NEAR(contact.contact_center.y(), 0.6, 0.02);
     EXPECT_NEAR(contact.contact_center.z(), top, 1e-3);
   }
+}
+
+TEST(SandContacts, OfBodiesOnEachOtherAreCarriedByTheUpperOne) {
+  std::mt19937 random = seededGenerator();
+  const double spacing = 0.02;
+  Simulator simulator = buildSimulator(levelSand({1.0, 1.0}, spacing, 0.1));
+  const auto field = fieldOf(Box{{0.4, 0.4, 0.06}}, spacing);
+  const auto place = [&](const char* name, double height) {
+    simulator.placeBody(simulator.addBody(name, field),
+                        poseOf({0.5, 0.5}, height, Eigen::Quaterniond::Identity()));
+  };
+  place("upper", 0.46);
+  place("lower", 0.4);
+  simulator.advance(0.0);
+  Edit shower;
+  shower.region.center = {0.5, 0.5};
+  shower.value = uniform(random, 0.005, 0.05);
+  const double fallen = simulator.edit(shower);
+  const std::vector<SandContact> contacts = simulator.contacts(simulator.fields());
+  expectNoContact(contacts[0]);
+  EXPECT_NEAR(contacts[1].carried_volume, fallen, 1e-5 * fallen);
+  EXPECT_NEAR(contacts[1].contact_center.z(), 0.49, 1e-3);
 }
 
 /// In any scene: figures are those of something that is there, and nothing is carried by nobody.
