@@ -27,18 +27,14 @@ std::shared_ptr<const DistanceField> fieldOf(const Shape& shape, double spacing)
 
 constexpr double kBuiltSurface = 0.5;
 
-/// A block around which sand was built up to a plane.
+/// A block in level sand that was built up around it.
 struct BuiltInBlock {
   Eigen::Vector2d size;
   Eigen::Vector2d place;
-  double turn;                      ///< about z
-  double depth;                     ///< of its underside below the sand, in its middle
-  Eigen::Vector2d slope{0.0, 0.0};  ///< of the sand
+  double turn;   ///< about z
+  double depth;  ///< of its underside below the sand
 
   double area() const { return size.x() * size.y(); }
-  double surfaceAt(double x, double y) const {
-    return kBuiltSurface + slope.dot(Eigen::Vector2d(x, y) - place);
-  }
 };
 
 BuiltInBlock randomBlock(std::mt19937& random) {
@@ -57,16 +53,20 @@ struct BuiltInSand {
   std::vector<float> clearance;  ///< depth of sand that fits under the block, infinite beside it [m]
 };
 
-/// Rays in sand that knows of no block tell how much of it must not be there.
-BuiltInSand sandWith(const BuiltInBlock& block, double spacing) {
-  constexpr double kHeight = 0.3;
-  const auto field = fieldOf(Box{{block.size.x(), block.size.y(), kHeight}}, spacing);
-  const Eigen::Isometry3d pose = poseOf(block.place, kBuiltSurface - block.depth + 0.5 * kHeight,
-                                        turned(block.turn, Eigen::Vector3d::UnitZ()));
+struct PlacedField {
+  std::shared_ptr<const DistanceField> field;
+  Eigen::Isometry3d pose;
+};
+
+/// A plane of sand built up around bodies. Rays in sand that knows of no bodies tell how much of it must not
+/// be there. @param surface of (x, y)
+template <class Surface>
+BuiltInSand builtAround(const std::vector<PlacedField>& bodies, double spacing, const Surface& surface) {
   Scene scene = levelSand({1.0, 1.0}, spacing, kBuiltSurface);
   const auto placed = [&] {
     Simulator simulator = buildSimulator(scene);
-    simulator.placeBody(simulator.addBody("block", field), pose);
+    for (std::size_t k = 0; k < bodies.size(); ++k)
+      simulator.placeBody(simulator.addBody("body " + std::to_string(k), bodies[k].field), bodies[k].pose);
     simulator.advance(0.0);
     return simulator;
   };
@@ -75,10 +75,19 @@ BuiltInSand sandWith(const BuiltInBlock& block, double spacing) {
   for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i) {
       const std::size_t k = grid.index(i, j);
-      scene.depth[k] = std::min(static_cast<float>(block.surfaceAt(grid.x(i), grid.y(j))), clearance[k]);
+      scene.depth[k] = std::min(static_cast<float>(surface(grid.x(i), grid.y(j))), clearance[k]);
     }
   }
   return {placed(), clearance};
+}
+
+constexpr double kBlockHeight = 0.3;
+
+Simulator sandWith(const BuiltInBlock& block, double spacing) {
+  const PlacedField body{fieldOf(Box{{block.size.x(), block.size.y(), kBlockHeight}}, spacing),
+                         poseOf(block.place, kBuiltSurface - block.depth + 0.5 * kBlockHeight,
+                                turned(block.turn, Eigen::Vector3d::UnitZ()))};
+  return builtAround({body}, spacing, [](double, double) { return kBuiltSurface; }).simulator;
 }
 
 TEST(SandContacts, OfABlockInFlatSandConvergeToAreaTimesDepth) {
@@ -90,7 +99,7 @@ TEST(SandContacts, OfABlockInFlatSandConvergeToAreaTimesDepth) {
     const BuiltInBlock block = randomBlock(random);
     const double volume = block.area() * block.depth;
     for (std::size_t k = 0; k < spacings.size(); ++k) {
-      const SandContact contact = contactOf(sandWith(block, spacings[k]).simulator);
+      const SandContact contact = contactOf(sandWith(block, spacings[k]));
       const double perimeter = 2.0 * block.size.sum();
       // Half a cell around it.
       EXPECT_NEAR(contact.submerged_volume, volume, 0.5 * perimeter * spacings[k] * block.depth);
@@ -108,24 +117,69 @@ TEST(SandContacts, OfABlockInFlatSandConvergeToAreaTimesDepth) {
   EXPECT_LT(errors[2], 0.01);
 }
 
-/// What is a plane around a block is the same plane under it.
-TEST(SandContacts, PlaneSurfaceGoesOnUnderABlock) {
+/// A prism with three upright sides: unlike a box, no column of it has its counterpart across the middle.
+TriangleMesh wedge(double length, double width) {
+  TriangleMesh mesh;
+  for (const double z : {-0.5 * kBlockHeight, 0.5 * kBlockHeight}) {
+    mesh.vertices.emplace_back(-0.5 * length, -0.5 * width, z);
+    mesh.vertices.emplace_back(0.5 * length, -0.5 * width, z);
+    mesh.vertices.emplace_back(-0.5 * length, 0.5 * width, z);
+  }
+  mesh.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+  return mesh;
+}
+
+/// What is a plane around a body is the same plane under it, also where the body comes out of the sand.
+TEST(SandContacts, PlaneSurfaceGoesOnUnderABody) {
   std::mt19937 random = seededGenerator();
   for (int trial = 0; trial < 16; ++trial) {
-    BuiltInBlock block = randomBlock(random);
-    const double slope = uniform(random, -0.3, 0.3);
-    block.slope = {slope, uniform(random, -0.3, 0.3)};
-    const BuiltInSand sand = sandWith(block, 0.025);
+    const double spacing = 0.025;
+    const double length = uniform(random, 0.2, 0.4);
+    const Eigen::Vector2d middle(0.5, 0.5);
+    const double depth = uniform(random, -0.02, 0.05);
+    const PlacedField body{fieldOf(wedge(length, uniform(random, 0.2, 0.4)), spacing),
+                           poseOf(middle, kBuiltSurface - depth + 0.5 * kBlockHeight,
+                                  turned(uniform(random, -M_PI, M_PI), Eigen::Vector3d::UnitZ()))};
+    const double slope_x = uniform(random, -0.3, 0.3);
+    const Eigen::Vector2d slope(slope_x, uniform(random, -0.3, 0.3));
+    const auto surface = [&](double x, double y) {
+      return kBuiltSurface + slope.dot(Eigen::Vector2d(x, y) - middle);
+    };
+    const BuiltInSand sand = builtAround({body}, spacing, surface);
     const Grid& grid = sand.simulator.grid();
     double expected = 0.0;
     for (int j = 0; j < grid.rows; ++j) {
       for (int i = 0; i < grid.columns; ++i) {
         const double clearance = sand.clearance[grid.index(i, j)];
-        if (std::isfinite(clearance)) expected += block.surfaceAt(grid.x(i), grid.y(j)) - clearance;
+        if (std::isfinite(clearance)) expected += std::max(surface(grid.x(i), grid.y(j)) - clearance, 0.0);
       }
     }
     expected *= grid.cellArea();
-    EXPECT_NEAR(contactOf(sand.simulator).submerged_volume, expected, 1e-5 * expected);
+    EXPECT_NEAR(contactOf(sand.simulator).submerged_volume, expected, 1e-5 * length * length * 0.1);
+  }
+}
+
+/// Sand under a body is no surface for the body beside it.
+TEST(SandContacts, OfNeighboursAreThoseOfEachAlone) {
+  std::mt19937 random = seededGenerator();
+  for (int trial = 0; trial < 8; ++trial) {
+    const double spacing = 0.02;
+    const double side = 10.0 * spacing;
+    const auto field = fieldOf(Box{{side, side, kBlockHeight}}, spacing);
+    std::vector<PlacedField> bodies;
+    std::vector<double> depths;
+    for (const double x : {0.3, 0.5, 0.7}) {
+      depths.push_back(uniform(random, 0.02, 0.25));
+      bodies.push_back({field, poseOf({x, 0.5}, kBuiltSurface - depths.back() + 0.5 * kBlockHeight,
+                                      Eigen::Quaterniond::Identity())});
+    }
+    const Simulator simulator =
+        builtAround(bodies, spacing, [](double, double) { return kBuiltSurface; }).simulator;
+    const std::vector<SandContact> contacts = simulator.contacts(simulator.fields());
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+      EXPECT_NEAR(contacts[k].submerged_volume, side * side * depths[k], 0.005 * side * side * depths[k]);
+      EXPECT_NEAR(contacts[k].touching_area, side * side, 1e-6);
+    }
   }
 }
 
@@ -269,6 +323,28 @@ TEST(SandContacts, OfAPlateInTheAirAreWhatItCarries) {
     EXPECT_NEAR(contact.contact_center.y(), 0.6, 0.02);
     EXPECT_NEAR(contact.contact_center.z(), top, 1e-3);
   }
+}
+
+TEST(SandContacts, OfBodiesOnEachOtherAreCarriedByTheUpperOne) {
+  std::mt19937 random = seededGenerator();
+  const double spacing = 0.02;
+  Simulator simulator = buildSimulator(levelSand({1.0, 1.0}, spacing, 0.1));
+  const auto field = fieldOf(Box{{0.4, 0.4, 0.06}}, spacing);
+  const auto place = [&](const char* name, double height) {
+    simulator.placeBody(simulator.addBody(name, field),
+                        poseOf({0.5, 0.5}, height, Eigen::Quaterniond::Identity()));
+  };
+  place("upper", 0.46);
+  place("lower", 0.4);
+  simulator.advance(0.0);
+  Edit shower;
+  shower.region.center = {0.5, 0.5};
+  shower.value = uniform(random, 0.005, 0.05);
+  const double fallen = simulator.edit(shower);
+  const std::vector<SandContact> contacts = simulator.contacts(simulator.fields());
+  expectNoContact(contacts[0]);
+  EXPECT_NEAR(contacts[1].carried_volume, fallen, 1e-5 * fallen);
+  EXPECT_NEAR(contacts[1].contact_center.z(), 0.49, 1e-3);
 }
 
 /// In any scene: figures are those of something that is there, and nothing is carried by nobody.
