@@ -3,10 +3,12 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <sstream>
 
 #include "shallow_sand/ros/conversions.h"
 #include "shallow_sand/scene/mesh_file.h"
+#include "shallow_sand/scene/state_folder.h"
 
 namespace shallow_sand {
 
@@ -67,6 +69,29 @@ void takeMeshFile(YAML::Node& parameters, const std::string& source, std::string
   } catch (const InvalidParameter& problem) {
     throw SceneError(source + ": " + problem.what());
   }
+}
+
+/// Where ROS keeps what its nodes write.
+std::string defaultStateFolder() {
+  const char* home = std::getenv("ROS_HOME");
+  if (home != nullptr && *home == '/') return home + std::string("/shallow_sand");
+  home = std::getenv("HOME");
+  return home != nullptr && *home == '/' ? home + std::string("/.ros/shallow_sand") : "/tmp/shallow_sand";
+}
+
+void takeSnapshots(YAML::Node& yaml, const std::string& source, NodeParameters& parameters) {
+  parameters.state_folder = defaultStateFolder();
+  take(yaml, source, "state_folder", "the path of a folder", parameters.state_folder);
+  if (parameters.state_folder.empty() || parameters.state_folder.front() != '/')
+    throw SceneError(source + ": state_folder: " + parameters.state_folder + "; expected an absolute path");
+  takeBetween(yaml, source, "snapshot_period", 0.0, 1e9, "seconds", parameters.snapshot_period);
+  take(yaml, source, "snapshot_file", "the name of a file", parameters.snapshot_file);
+  try {
+    fileWithin(parameters.state_folder, parameters.snapshot_file);
+  } catch (const InvalidParameter& problem) {
+    throw SceneError(source + ": snapshot_" + problem.what());
+  }
+  take(yaml, source, "restore", "true or false", parameters.restore);
 }
 
 /// Which links of a robot dig, and as what.
@@ -147,6 +172,7 @@ NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
   take(yaml, source, "report", "the path of a file", parameters.report);
   take(yaml, source, "picture", "the path of a file", parameters.picture);
   takeMeshFile(yaml, source, parameters.mesh_file);
+  takeSnapshots(yaml, source, parameters);
   takeBetween(yaml, source, "frame_rate", 0.01, 1e4, "hertz", parameters.frame_rate);
   takeBetween(yaml, source, "publish_rate", 0.01, 1e4, "hertz", parameters.publish_rate);
   takeBetween(yaml, source, "height_field_rate", 0.01, 1e4, "hertz", parameters.height_field_rate);

@@ -34,7 +34,10 @@ SandNode::SandNode()
     : parameters_(readNodeParameters(private_node_)),
       simulator_(build(parameters_.scene)),
       bodies_(parameters_, transforms_, simulator_),
-      services_(simulator_.grid().spacing, bodies_),
+      states_(loop_calls_, parameters_, bodies_, simulator_),
+      services_(loop_calls_, simulator_.grid().spacing, bodies_),
+      editing_(loop_calls_, bodies_, simulator_),
+      queries_(loop_calls_, bodies_, simulator_),
       pour_(private_node_, bodies_, simulator_),
       body_markers_(private_node_, parameters_.scene.parameters.grid.frame),
       body_handles_(parameters_.scene.parameters.grid.frame, 1.0 / parameters_.frame_rate, bodies_),
@@ -61,7 +64,8 @@ void SandNode::run() {
   const ros::Duration delay(parameters_.tf_delay);
   while (ros::ok()) {
     ros::spinOnce();
-    services_.runPending();
+    loop_calls_.runPending();
+    states_.saveIfDue();
     const ros::Time now = ros::Time::now();
     if (now < last_now_) restart(last_now_ - now);
     last_now_ = now;

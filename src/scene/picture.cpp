@@ -11,6 +11,7 @@
 #include "canvas.h"
 #include "gdal_support.h"
 #include "raster.h"
+#include "shallow_sand/core/replace_file.h"
 #include "shallow_sand/surface/surface_colour.h"
 
 namespace shallow_sand {
@@ -237,7 +238,7 @@ void writePicture(const std::string& path, const Grid& grid, const Fields& field
     drawOutline(outline, grid, relief.pixel, canvas);
   }
   drawScaleBar(relief.pixel, canvas);
-  canvas.writePng(path);
+  replaceFile(path, [&](const std::filesystem::path& part) { canvas.writePng(part.string()); });
 }
 
 }  // namespace shallow_sand

@@ -127,6 +127,20 @@ double Ledger::error() const {
   return came > 0.0 ? std::abs(now - (came - left)) / came : 0.0;
 }
 
+Snapshot withoutBodies(Snapshot snapshot) {
+  Fields& fields = snapshot.fields;
+  const auto lay = [](std::vector<float>& load, std::vector<float>& ground) {
+    for (std::size_t k = 0; k < load.size(); ++k) ground[k] += load[k];
+    load.clear();
+  };
+  lay(fields.load, fields.depth);
+  lay(fields.load_momentum_x, fields.momentum_x);
+  lay(fields.load_momentum_y, fields.momentum_y);
+  fields.load_elevation.clear();
+  snapshot.contacts = {};
+  return snapshot;
+}
+
 class Simulator::Implementation {
  public:
   struct Body {
@@ -261,6 +275,11 @@ class Simulator::Implementation {
       throw InvalidParameter("time", std::to_string(snapshot.time), "finite seconds");
     if (!(snapshot.next_step > 0.0))
       throw InvalidParameter("next_step", std::to_string(snapshot.next_step), "positive seconds");
+    const Ledger& ledger = snapshot.ledger;
+    for (const double volume : {ledger.start, ledger.poured, ledger.left}) {
+      if (!(volume >= 0.0 && std::isfinite(volume)))
+        throw InvalidParameter("ledger", std::to_string(volume), "finite cubic metres that are not negative");
+    }
     requireFit(snapshot.fields, snapshot.contacts);
     requireFit(snapshot.grains);
   }

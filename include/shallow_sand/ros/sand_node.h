@@ -9,11 +9,15 @@
 #include "shallow_sand/ros/body_markers.h"
 #include "shallow_sand/ros/body_services.h"
 #include "shallow_sand/ros/height_field_publisher.h"
+#include "shallow_sand/ros/loop_calls.h"
 #include "shallow_sand/ros/node_parameters.h"
 #include "shallow_sand/ros/particles_publisher.h"
 #include "shallow_sand/ros/pour_topic.h"
 #include "shallow_sand/ros/robot.h"
 #include "shallow_sand/ros/sand_bodies.h"
+#include "shallow_sand/ros/sand_editing.h"
+#include "shallow_sand/ros/sand_queries.h"
+#include "shallow_sand/ros/sand_states.h"
 #include "shallow_sand/ros/surface_publisher.h"
 #include "shallow_sand/ros/transform_reader.h"
 #include "shallow_sand/sim/simulator.h"
@@ -29,6 +33,7 @@ namespace shallow_sand {
 /// given up, and ~status says by how much the sand lags; bodies cross what was given up without speed. When
 /// time goes backwards the sand goes on from there;
 /// - serves ~add_body, ~move_body and ~remove_body; meshes are read and sampled beside the sand;
+/// - serves ~edit_sand, ~query_surface, ~volume_in_polygon, ~save and ~load, and saves snapshots of itself;
 /// - publishes ~points, ~mesh (latched, at ~publish_rate), ~height_field and its updates, each beside the
 /// sand: the sand hands over what has changed, on the GPU while the next frame runs, and waits for nobody;
 /// and ~particles while somebody listens, if the scene has grains;
@@ -65,7 +70,11 @@ class SandNode {
   TransformReader transforms_;
   SandBodies bodies_;
   std::vector<Robot> robots_;
+  LoopCalls loop_calls_;
+  SandStates states_;  ///< before what tells others of the sand
   BodyServices services_;
+  SandEditing editing_;
+  SandQueries queries_;
   PourTopic pour_;
   BodyMarkers body_markers_;
   BodyHandles body_handles_;

@@ -78,6 +78,9 @@ struct Snapshot {
   Grains grains;  ///< those that there are; if it has none, grains start anew
 };
 
+/// The same sand without bodies: what they held lies on the ground under it.
+Snapshot withoutBodies(Snapshot snapshot);
+
 /// The one façade over the solver, its bodies and its backends. Not thread-safe; several may live in one
 /// process.
 class Simulator {
