@@ -37,6 +37,7 @@ SandNode::SandNode()
       states_(loop_calls_, parameters_, bodies_, simulator_),
       services_(loop_calls_, simulator_.grid().spacing, bodies_),
       editing_(loop_calls_, bodies_, simulator_),
+      setting_(loop_calls_, bodies_, simulator_),
       queries_(loop_calls_, bodies_, simulator_),
       pour_(private_node_, bodies_, simulator_),
       body_markers_(private_node_, parameters_.scene.parameters.grid.frame),

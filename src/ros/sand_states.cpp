@@ -47,7 +47,7 @@ SandStates::SandStates(LoopCalls& loop, const NodeParameters& parameters, SandBo
     : parameters_(parameters),
       bodies_(bodies),
       simulator_(simulator),
-      grid_(simulator.parameters()),
+      sand_parameters_(simulator.parameters()),
       services_(loop) {
   if (parameters.restore) restore();
   last_ = simulator_.time();
@@ -62,12 +62,12 @@ std::string SandStates::save(const std::string& name) {
   const fs::path path = fileWithin(parameters_.state_folder, name);
   Snapshot state;
   services_.inLoop([&] { state = simulator_.snapshot(); });
-  return write(path, grid_, state);
+  return write(path, sand_parameters_, state);
 }
 
 std::string SandStates::load(const std::string& name) {
   const fs::path path = fileWithin(parameters_.state_folder, name);
-  Snapshot state = loadState(path.string(), grid_);
+  Snapshot state = loadState(path.string(), sand_parameters_);
   std::ostringstream done;
   done << "the sand goes on from " << path.string() << " at " << state.time << " s";
   services_.inLoop([&] { goOnFrom(std::move(state)); });
@@ -88,7 +88,7 @@ void SandStates::restore() {
     return;
   }
   try {
-    goOnFrom(loadState(path.string(), grid_));
+    goOnFrom(loadState(path.string(), sand_parameters_));
     ROS_INFO_STREAM("~restore: the sand goes on from " << path.string() << " at " << simulator_.time()
                                                        << " s");
   } catch (const std::exception& problem) {
@@ -108,7 +108,7 @@ void SandStates::saveIfDue() {
   last_ = now;
   writing_ = std::async(std::launch::async, [this, state = simulator_.snapshot()] {
     try {
-      write(fileWithin(parameters_.state_folder, parameters_.snapshot_file), grid_, state);
+      write(fileWithin(parameters_.state_folder, parameters_.snapshot_file), sand_parameters_, state);
       return std::string();
     } catch (const std::exception& problem) {
       return std::string(problem.what());

@@ -11,7 +11,6 @@
 #include "canvas.h"
 #include "gdal_support.h"
 #include "raster.h"
-#include "shallow_sand/core/replace_file.h"
 #include "shallow_sand/surface/surface_colour.h"
 
 namespace shallow_sand {
@@ -238,7 +237,7 @@ void writePicture(const std::string& path, const Grid& grid, const Fields& field
     drawOutline(outline, grid, relief.pixel, canvas);
   }
   drawScaleBar(relief.pixel, canvas);
-  replaceFile(path, [&](const std::filesystem::path& part) { canvas.writePng(part.string()); });
+  canvas.writePng(path);
 }
 
 }  // namespace shallow_sand

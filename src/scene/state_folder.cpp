@@ -1,6 +1,7 @@
 #include "shallow_sand/scene/state_folder.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "shallow_sand/core/parameters.h"
 
@@ -16,12 +17,15 @@ bool holds(const fs::path& folder, const fs::path& file) {
 }  // namespace
 
 fs::path fileWithin(const fs::path& folder, const std::string& name) {
+  const auto isControl = [](unsigned char letter) { return std::iscntrl(letter) != 0; };
   const auto refuse = [&](const std::string& found) {
-    throw InvalidParameter("file", name + found, "the name of a file in the folder " + folder.string());
+    std::string told = name;
+    std::replace_if(told.begin(), told.end(), isControl, '?');
+    throw InvalidParameter("file", told + found, "the name of a file in the folder " + folder.string());
   };
   const fs::path given = name;
-  // Functions of the system would read such a name to its first zero only.
-  if (name.find('\0') != std::string::npos) refuse(", which holds a zero byte");
+  // Functions of the system would read a name to its first zero only, and the log a line.
+  if (std::any_of(name.begin(), name.end(), isControl)) refuse(", which holds control characters");
   if (!given.has_filename() || given.filename() == ".") refuse(name.empty() ? "empty" : ", which is no name");
   if (given.is_absolute()) refuse(", an absolute path");
   if (std::find(given.begin(), given.end(), "..") != given.end()) refuse(", which leads out by ..");

@@ -216,6 +216,39 @@ class Simulator::Implementation {
     finish();
     const LocalRegion region = localRegion(edit.region, grid_);
     if (windowOf(region, grid_).empty()) requireOnGrid("center", edit.region.center);
+    expectSand(region);
+    return engine_->edit(region, edit.operation, static_cast<float>(edit.value));
+  }
+
+  double setSand(EditOperation operation, const CellValues& cells) {
+    const std::vector<float> values = valuesToSet(operation, cells);
+    finish();
+    expectSand(wholeMap());
+    return engine_->edit(operation, values);
+  }
+
+  /// NaN for cells that keep their sand.
+  std::vector<float> valuesToSet(EditOperation operation, const CellValues& cells) const {
+    const float any = -std::numeric_limits<float>::infinity();
+    if (operation != EditOperation::set && operation != EditOperation::level)
+      throw InvalidParameter("operation", "neither set nor level", "one of the two");
+    if (cells.given.size() != grid_.cells()) {
+      throw InvalidParameter("given", std::to_string(cells.given.size()) + " values",
+                             std::to_string(grid_.cells()) + ", one for each cell");
+    }
+    std::vector<float> values = cells.values;
+    const auto replaceOthers = [&](float value) {
+      for (std::size_t k = 0; k < std::min(values.size(), cells.given.size()); ++k)
+        values[k] = cells.given[k] == 0 ? value : values[k];
+    };
+    replaceOthers(0.0f);
+    checkField("values", values, grid_, operation == EditOperation::set ? 0.0f : any);
+    replaceOthers(std::numeric_limits<float>::quiet_NaN());
+    return values;
+  }
+
+  /// Before sand comes or goes in a region.
+  void expectSand(const LocalRegion& region) {
     if (!bodies_.empty() && parameters_.displacement) {
       // A body that hangs high above the sand catches what comes down now.
       engine_->expectSand(region);
@@ -223,7 +256,6 @@ class Simulator::Implementation {
     }
     // Sand may have come to lie where a body is.
     placed_anew_ = placed_anew_ || !bodies_.empty();
-    return engine_->edit(region, edit.operation, static_cast<float>(edit.value));
   }
 
   /// What only looks, too, has to wait for a run that was begun.
@@ -662,6 +694,9 @@ void Simulator::placeBody(std::size_t body, const Eigen::Isometry3d& pose) {
 void Simulator::removeBody(std::size_t body) { implementation_->removeBody(body); }
 void Simulator::addPour(const Pour& pour) { implementation_->addPour(pour); }
 double Simulator::edit(const Edit& edit) { return implementation_->edit(edit); }
+double Simulator::setSand(EditOperation operation, const CellValues& cells) {
+  return implementation_->setSand(operation, cells);
+}
 Snapshot Simulator::snapshot() const { return implementation_->snapshot(); }
 void Simulator::restore(const Snapshot& snapshot) { implementation_->restore(snapshot); }
 void Simulator::advance(double duration) {

@@ -1,15 +1,21 @@
 #!/usr/bin/python3
 """Sand is edited and asked about through services, in any tf frame; what makes no sense is refused and changes nothing."""
 import math
+import os
+import struct
+import tempfile
+import time
 import unittest
 
 import rospy
 import rostest
 from geometry_msgs.msg import Point, Point32, PointStamped, Polygon, PolygonStamped
 from sand_test import SCENE, Place, RunningNode, transform
-from shallow_sand.srv import EditSand, EditSandRequest, QuerySurface, VolumeInPolygon
-from std_msgs.msg import Header
+from sensor_msgs.msg import PointCloud2, PointField
+from shallow_sand.srv import EditSand, EditSandRequest, QuerySurface, SetSand, SetSandRequest, StateFile, VolumeInPolygon
+from std_msgs.msg import Header, String
 from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import Marker
 
 PARAMETERS = dict(SCENE, robot_description="")
 DEPTH = SCENE["sand"][0]["depth"]
@@ -34,9 +40,24 @@ def polygon(frame, *corners):
     return PolygonStamped(Header(frame_id=frame), Polygon([Point32(x, y, 0.0) for x, y in corners]))
 
 
+def cloud(frame, points):
+    message = PointCloud2(Header(frame_id=frame), height=1, width=len(points), point_step=12, row_step=12 * len(points), is_dense=True)
+    message.fields = [PointField(name, 4 * k, PointField.FLOAT32, 1) for k, name in enumerate("xyz")]
+    message.data = b"".join(struct.pack("<fff", *point) for point in points)
+    return message
+
+
+def middles(x_min, x_max, y_min, y_max):
+    """Of the cells of a rectangle."""
+    def along(low, high):
+        return [low + (k + 0.5) * SPACING for k in range(round((high - low) / SPACING))]
+    return [(x, y) for x in along(x_min, x_max) for y in along(y_min, y_max)]
+
+
 class Services:
     def __init__(self, node):
-        kinds = {"edit_sand": EditSand, "query_surface": QuerySurface, "volume_in_polygon": VolumeInPolygon}
+        kinds = {"edit_sand": EditSand, "query_surface": QuerySurface, "volume_in_polygon": VolumeInPolygon,
+                 "set_sand": SetSand, "save": StateFile}
         for name, kind in kinds.items():
             rospy.wait_for_service(f"{node.name}/{name}", timeout=20.0)
             setattr(self, name, rospy.ServiceProxy(f"{node.name}/{name}", kind))
@@ -196,6 +217,91 @@ class Editing(unittest.TestCase):
             ]:
                 self.assert_refused(volume_of(request), node, "volume_in_polygon", *words)
             node.assert_well(self)
+
+    def test_the_sand_is_set(self):
+        with tempfile.TemporaryDirectory() as folder, RunningNode("sets", dict(PARAMETERS, state_folder=folder)) as node:
+            services = Services(node)
+            self.wait_for_frame(services)
+            latched = {}
+
+            def publish(name, message):
+                latched[name] = rospy.Publisher("/" + name, type(message), queue_size=1, latch=True)
+                latched[name].publish(message)
+                return "/" + name
+
+            def set_sand(expected, **fields):
+                response = services.set_sand(SetSandRequest(timeout=10.0, **fields))
+                self.assertTrue(response.success, response.message)
+                self.assertAlmostEqual(response.volume, expected, delta=1e-6, msg=fields)
+
+            # A part of the map; the rest keeps its sand. In the turned frame, x' = y - 0.2, y' = 0.5 - x, z' = z - 1.
+            part = middles(0.2, 0.4, 0.3, 0.8)
+            topic = publish("part", cloud("turned", [(y - 0.2, 0.5 - x, 0.3 - 1.0) for x, y in part]))
+            set_sand(0.2 * 0.1, topic=topic, heights_as="surface")
+            # Its own surface, as points and as a mesh: nothing changes.
+            for own in ("points", "mesh"):
+                set_sand(0.0, topic=f"{node.name}/{own}", heights_as="surface")
+            everywhere = middles(0.0, 1.0, 0.0, 1.0)
+            topic = publish("shallow", cloud("sand", [(x, y, 0.05) for x, y in everywhere]))
+            set_sand(0.05 - DEPTH - 0.02, topic=topic, heights_as="depth")
+            square = Marker(Header(frame_id="sand"), type=Marker.TRIANGLE_LIST)
+            square.scale.x = square.scale.y = square.scale.z = square.pose.orientation.w = 1.0
+            square.points = [Point(x, y, 0.15) for x, y in ((0, 0), (1, 0), (1, 0.5), (0, 0), (1, 0.5), (0, 0.5))]
+            set_sand(0.5 * 0.1, topic=publish("square", square), heights_as="surface")
+            # A state is a terrain, too; its first band is the bed, which is at zero.
+            self.assertTrue(services.save("bed.tif").success)
+            set_sand(-0.5 * 0.05 - 0.5 * 0.15, file=os.path.join(folder, "bed.tif"), heights_as="depth")
+            status = node.status(lambda status: status.volume < 1e-6)
+            self.assertLess(status.volume_error, 1e-6)
+
+    def test_sand_that_is_refused(self):
+        with RunningNode("sets_badly", PARAMETERS) as node:
+            services = Services(node)
+            before = node.status()
+            lies = cloud("sand", [(0.5, 0.5, 1.0)])
+            lies.width = 1000000000
+            messages = {"lies": lies, "no_frame": cloud("", [(0.5, 0.5, 1.0)]), "no_tf": cloud("nowhere", [(0.5, 0.5, 1.0)]),
+                        "nan": cloud("sand", [(0.5, 0.5, NAN)]), "beside": cloud("sand", [(5.0, 5.0, 1.0)]),
+                        "negative": cloud("sand", [(0.5, 0.5, -1.0)]), "high": cloud("sand", [(0.5, 0.5, 1e7)]),
+                        "empty": cloud("sand", []), "text": String("hello"), "lines": Marker(Header(frame_id="sand"), type=Marker.LINE_LIST)}
+            publishers = []
+            for name, message in messages.items():
+                publishers.append(rospy.Publisher("/" + name, type(message), queue_size=1, latch=True))
+                publishers[-1].publish(message)
+            for fields, *words in (
+                ({"heights_as": "height", "topic": "/nan"}, "heights_as", "height", "depth or surface"),
+                ({"heights_as": ""}, "heights_as", "empty"),
+                ({}, "file", "topic", "none"),
+                ({"topic": "/nan", "file": "/tmp"}, "both"),
+                ({"file": "relative.tif"}, "relative.tif", "absolute"),
+                ({"file": "/missing.tif"}, "/missing.tif"),
+                ({"file": "/vsicurl/http://localhost/x.tif"}, "file"),
+                ({"file": os.path.abspath(__file__)}, "file", os.path.basename(__file__)),
+                ({"topic": "/nan", "timeout": 0.0}, "timeout", "above 0"),
+                ({"topic": "/nan", "timeout": NAN}, "timeout"),
+                ({"topic": "/nan", "timeout": 1e9}, "timeout", "60"),
+                ({"topic": "/silent", "timeout": 0.3}, "topic", "/silent", "0.3"),
+                ({"topic": "not a name"}, "topic", "not a name"),
+                ({"topic": "/lies"}, "width 1000000000"),
+                ({"topic": "/no_frame"}, "frame_id", "empty"),
+                ({"topic": "/no_tf"}, "frame_id", "nowhere"),
+                ({"topic": "/nan"}, "nan"),
+                ({"topic": "/beside"}, "no cell"),
+                ({"topic": "/empty"}, "no cell"),
+                ({"topic": "/negative"}, "-1 in cell (10, 10)", "not negative"),
+                ({"topic": "/high"}, "million"),
+                ({"topic": "/text"}, "std_msgs/String", "PointCloud2"),
+                ({"topic": "/lines"}, "marker", "TRIANGLE_LIST"),
+            ):
+                response = services.set_sand(SetSandRequest(**{"heights_as": "depth", "timeout": 10.0, **fields}))
+                self.assert_refused(response, node, "set_sand", *words)
+            # While one waits for a topic, the sand runs and others are answered.
+            started = time.monotonic()
+            after = node.status(lambda status: status.simulated_time > before.simulated_time)
+            self.assertLess(time.monotonic() - started, 5.0)
+            self.assertAlmostEqual(after.volume, before.volume, delta=1e-9)
+            self.assertEqual(after.volume_poured, 0.0)
+            self.assertEqual(after.volume_left, 0.0)
 
 
 if __name__ == "__main__":

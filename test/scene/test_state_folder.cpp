@@ -36,11 +36,19 @@ TEST_F(StateFolder, HoldsItsFilesAndThoseInFoldersWithin) {
 }
 
 TEST_F(StateFolder, HoldsNothingElse) {
-  for (const char* name :
-       {"", ".", "..", "../x.tif", "a/../../x.tif", "a/..", "/etc/passwd", "/x", "a/", "x\n/"})
+  for (const char* name : {"", ".", "..", "../x.tif", "a/../../x.tif", "a/..", "/etc/passwd", "/x", "a/"})
     refuse(name);
   refuse((folder_ / "x.tif").string());
-  refuse(std::string("x.tif\0.txt", 10));
+  for (const std::string& name : {std::string("x.tif\0.txt", 10), std::string("a\nb.tif")}) {
+    try {
+      FAIL() << "taken for " << fileWithin(folder_, name);
+    } catch (const InvalidParameter& problem) {
+      const std::string text = problem.what();
+      EXPECT_NE(text.find("?"), std::string::npos) << text;
+      EXPECT_NE(text.find(folder_.string()), std::string::npos) << text;
+      EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+    }
+  }
   fs::create_directories(folder_ / "inner");
   refuse("inner");
 }

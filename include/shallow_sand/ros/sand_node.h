@@ -17,6 +17,7 @@
 #include "shallow_sand/ros/sand_bodies.h"
 #include "shallow_sand/ros/sand_editing.h"
 #include "shallow_sand/ros/sand_queries.h"
+#include "shallow_sand/ros/sand_setting.h"
 #include "shallow_sand/ros/sand_states.h"
 #include "shallow_sand/ros/surface_publisher.h"
 #include "shallow_sand/ros/transform_reader.h"
@@ -33,7 +34,8 @@ namespace shallow_sand {
 /// given up, and ~status says by how much the sand lags; bodies cross what was given up without speed. When
 /// time goes backwards the sand goes on from there;
 /// - serves ~add_body, ~move_body and ~remove_body; meshes are read and sampled beside the sand;
-/// - serves ~edit_sand, ~query_surface, ~volume_in_polygon, ~save and ~load, and saves snapshots of itself;
+/// - serves ~edit_sand, ~set_sand, ~query_surface, ~volume_in_polygon, ~save and ~load, and saves snapshots
+/// of itself;
 /// - publishes ~points, ~mesh (latched, at ~publish_rate), ~height_field and its updates, each beside the
 /// sand: the sand hands over what has changed, on the GPU while the next frame runs, and waits for nobody;
 /// and ~particles while somebody listens, if the scene has grains;
@@ -74,6 +76,7 @@ class SandNode {
   SandStates states_;  ///< before what tells others of the sand
   BodyServices services_;
   SandEditing editing_;
+  SandSetting setting_;
   SandQueries queries_;
   PourTopic pour_;
   BodyMarkers body_markers_;

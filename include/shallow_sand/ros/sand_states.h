@@ -35,9 +35,9 @@ class SandStates {
   const NodeParameters& parameters_;
   SandBodies& bodies_;
   Simulator& simulator_;
-  const SimulatorParameters grid_;    ///< what states must fit to; the same all the time, for all threads
-  double last_;                       ///< simulated time of the last snapshot [s]
-  std::future<std::string> writing_;  ///< what was wrong with it, empty if nothing was
+  const SimulatorParameters sand_parameters_;  ///< of the simulator, for all threads
+  double last_;                                ///< simulated time of the last snapshot [s]
+  std::future<std::string> writing_;           ///< what was wrong with it, empty if nothing was
   ros::WallTime told_;
   ServiceThread services_;
 };

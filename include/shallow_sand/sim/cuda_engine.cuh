@@ -28,6 +28,7 @@ class CudaEngine : public Engine {
   void start(const StepRun& run, std::vector<Placement> placements) override;
   StepRun finish() override;
   double edit(const LocalRegion& region, EditOperation operation, float value) override;
+  double edit(EditOperation operation, const std::vector<float>& values) override;
   Fields fields() override;
   void requestFields() override;
   const Fields& collectFields() override;
@@ -57,6 +58,7 @@ class CudaEngine : public Engine {
     CudaMemory<unsigned char> changed;
   };
 
+  double apply(ChangeSand& change);
   void sendBodies(const std::vector<PlacedBody>& before, std::vector<Placement> placements);
   void arePlaced(const std::vector<PlacedBody>& bodies);
   BodiesOnGpu bodiesOnGpu();

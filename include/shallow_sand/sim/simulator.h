@@ -118,6 +118,12 @@ class Simulator {
   /// left. @throws InvalidParameter also if the region lies outside of the grid
   double edit(const Edit& edit);
 
+  /// Gives the sand of many cells other depths now, or other surfaces, as `edit` does; the others keep
+  /// theirs. Returns by how much it grew [m³]; the ledger counts it as poured or left.
+  /// @param operation set or level @throws InvalidParameter also for numbers that are not finite, or depths
+  /// that are negative: then nothing has changed
+  double setSand(EditOperation operation, const CellValues& cells);
+
   Snapshot snapshot() const;
   /// Goes on from a snapshot of a simulator that was built from the same parameters, pours and bodies: with
   /// the same bits. @throws InvalidParameter if it does not fit
