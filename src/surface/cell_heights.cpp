@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
 
 #include "shallow_sand/core/parameters.h"
 #include "shallow_sand/device/window.h"
@@ -13,6 +16,12 @@ namespace {
 using Corners = std::array<Eigen::Vector3d, 3>;
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// Places along a line: none, if they end before they begin.
+struct Interval {
+  double begin;
+  double end;
+};
 
 /// A triangle seen from above, in cells along x and y, and in metres along z.
 class FlatTriangle {
@@ -35,17 +44,26 @@ class FlatTriangle {
     return !(twice_area_ > 1e-9 * longest * longest);
   }
 
-  /// Whether a place is over it. @param height there
-  bool holds(const Eigen::Vector2d& place, double& height) const {
-    double sum = 0.0;
+  /// Where along x it is at this y: to the left of all its sides, which go round counter-clockwise.
+  Interval at(double y) const {
+    Interval x{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     for (std::size_t k = 0; k < 3; ++k) {
       const Eigen::Vector2d along = side(k);
-      const double weight = cross(along, place - corners_[k].head<2>());
-      if (weight < -kTolerance * along.norm()) return false;
-      sum += weight * corners_[(k + 2) % 3].z();  // of the corner across
+      // Twice the area that a place at x = 0 of the side's begin spans with the side, and the tolerance.
+      const double area = along.x() * (y - corners_[k].y()) + kTolerance * along.norm();
+      if (along.y() > 0.0) x.end = std::min(x.end, corners_[k].x() + area / along.y());
+      if (along.y() < 0.0) x.begin = std::max(x.begin, corners_[k].x() + area / along.y());
+      if (along.y() == 0.0 && area < 0.0) return {1.0, 0.0};
     }
-    height = std::clamp(sum / twice_area_, lowest_, highest_);
-    return true;
+    return x;
+  }
+
+  double height(const Eigen::Vector2d& place) const {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < 3; ++k)
+      sum +=
+          cross(side(k), place - corners_[k].head<2>()) * corners_[(k + 2) % 3].z();  // of the corner across
+    return std::clamp(sum / twice_area_, lowest_, highest_);
   }
 
  private:
@@ -56,6 +74,14 @@ class FlatTriangle {
   double lowest_;
   double highest_;
 };
+
+/// Cells whose middles lie in an interval, of those from `begin` to `end`.
+std::pair<int, int> cellsIn(const Interval& x, int begin, int end) {
+  const auto first =
+      std::clamp(std::ceil(x.begin - 0.5), static_cast<double>(begin), static_cast<double>(end));
+  const auto last = std::clamp(std::floor(x.end + 0.5), static_cast<double>(begin), static_cast<double>(end));
+  return {static_cast<int>(first), static_cast<int>(last)};
+}
 
 }  // namespace
 
@@ -96,22 +122,26 @@ void HighestTriangles::add(const Eigen::Vector3d& a, const Eigen::Vector3d& b, c
   const Window window = Window::around(spacing * low.x() - margin, spacing * low.y() - margin,
                                        spacing * high.x() + margin, spacing * high.y() + margin, grid_);
   if (window.empty()) return;
-  constexpr std::uint64_t kMostLookedAt = 1u << 30;
-  looked_at_ += window.cells();
-  if (looked_at_ > kMostLookedAt) {
-    throw InvalidParameter("triangles", "more than 2^30 cells under all of them together",
-                           "triangles of a surface, which lie beside each other");
-  }
   for (int j = window.row_begin; j < window.row_end; ++j) {
-    for (int i = window.column_begin; i < window.column_end; ++i) {
-      double height = 0.0;
-      if (!triangle.holds({i + 0.5, j + 0.5}, height)) continue;
-      const std::size_t cell = grid_.index(i, j);
-      const float value = static_cast<float>(height);
-      if (values_.given[cell] == 0 || value > values_.values[cell]) values_.values[cell] = value;
-      values_.given[cell] = 1;
-    }
+    const auto [begin, end] = cellsIn(triangle.at(j + 0.5), window.column_begin, window.column_end);
+    for (int i = begin; i < end; ++i) raise(grid_.index(i, j), triangle.height({i + 0.5, j + 0.5}));
+    covered_ += 1 + static_cast<std::uint64_t>(std::max(end - begin, 0));
   }
+  requireFewLayers();
+}
+
+void HighestTriangles::raise(std::size_t cell, double height) {
+  const float value = static_cast<float>(height);
+  if (values_.given[cell] == 0 || value > values_.values[cell]) values_.values[cell] = value;
+  values_.given[cell] = 1;
+}
+
+void HighestTriangles::requireFewLayers() const {
+  constexpr std::uint64_t kLayers = 16;
+  constexpr std::uint64_t kOfSmallMaps = 1u << 24;
+  if (covered_ <= kLayers * grid_.cells() + kOfSmallMaps) return;
+  throw InvalidParameter("triangles", std::to_string(covered_) + " cells under all of them",
+                         "those of a surface, which lie beside each other");
 }
 
 }  // namespace shallow_sand

@@ -41,7 +41,7 @@ def polygon(frame, *corners):
 
 
 def cloud(frame, points):
-    message = PointCloud2(Header(frame_id=frame), height=1, width=len(points), point_step=12, row_step=12 * len(points), is_dense=True)
+    message = PointCloud2(header=Header(frame_id=frame), height=1, width=len(points), point_step=12, row_step=12 * len(points), is_dense=True)
     message.fields = [PointField(name, 4 * k, PointField.FLOAT32, 1) for k, name in enumerate("xyz")]
     message.data = b"".join(struct.pack("<fff", *point) for point in points)
     return message
@@ -239,12 +239,15 @@ class Editing(unittest.TestCase):
             topic = publish("part", cloud("turned", [(y - 0.2, 0.5 - x, 0.3 - 1.0) for x, y in part]))
             set_sand(0.2 * 0.1, topic=topic, heights_as="surface")
             # Its own surface, as points and as a mesh: nothing changes.
-            for own in ("points", "mesh"):
+            changed = rospy.Time.now()
+            for own, kind in (("points", PointCloud2), ("mesh", Marker)):
+                while rospy.wait_for_message(f"{node.name}/{own}", kind, timeout=20.0).header.stamp <= changed:
+                    pass
                 set_sand(0.0, topic=f"{node.name}/{own}", heights_as="surface")
             everywhere = middles(0.0, 1.0, 0.0, 1.0)
             topic = publish("shallow", cloud("sand", [(x, y, 0.05) for x, y in everywhere]))
             set_sand(0.05 - DEPTH - 0.02, topic=topic, heights_as="depth")
-            square = Marker(Header(frame_id="sand"), type=Marker.TRIANGLE_LIST)
+            square = Marker(header=Header(frame_id="sand"), type=Marker.TRIANGLE_LIST)
             square.scale.x = square.scale.y = square.scale.z = square.pose.orientation.w = 1.0
             square.points = [Point(x, y, 0.15) for x, y in ((0, 0), (1, 0), (1, 0.5), (0, 0), (1, 0.5), (0, 0.5))]
             set_sand(0.5 * 0.1, topic=publish("square", square), heights_as="surface")
@@ -262,8 +265,8 @@ class Editing(unittest.TestCase):
             lies.width = 1000000000
             messages = {"lies": lies, "no_frame": cloud("", [(0.5, 0.5, 1.0)]), "no_tf": cloud("nowhere", [(0.5, 0.5, 1.0)]),
                         "nan": cloud("sand", [(0.5, 0.5, NAN)]), "beside": cloud("sand", [(5.0, 5.0, 1.0)]),
-                        "negative": cloud("sand", [(0.5, 0.5, -1.0)]), "high": cloud("sand", [(0.5, 0.5, 1e7)]),
-                        "empty": cloud("sand", []), "text": String("hello"), "lines": Marker(Header(frame_id="sand"), type=Marker.LINE_LIST)}
+                        "negative": cloud("sand", [(0.51, 0.51, -1.0)]), "high": cloud("sand", [(0.5, 0.5, 1e7)]),
+                        "empty": cloud("sand", []), "text": String("hello"), "lines": Marker(header=Header(frame_id="sand"), type=Marker.LINE_LIST)}
             publishers = []
             for name, message in messages.items():
                 publishers.append(rospy.Publisher("/" + name, type(message), queue_size=1, latch=True))

@@ -13,12 +13,14 @@ namespace fs = std::filesystem;
 
 class StateFolder : public ::testing::Test {
  protected:
-  void refuse(const std::string& name) const {
+  void refuse(const std::string& name) const { refuse(name, name); }
+  /// @param told what the error says that the name is
+  void refuse(const std::string& name, const std::string& told) const {
     try {
       FAIL() << name << " is taken for " << fileWithin(folder_, name);
     } catch (const InvalidParameter& problem) {
       const std::string text = problem.what();
-      EXPECT_NE(text.find(name), std::string::npos) << text;
+      EXPECT_NE(text.find(told), std::string::npos) << text;
       EXPECT_NE(text.find(folder_.string()), std::string::npos) << text;
       EXPECT_EQ(text.find('\n'), std::string::npos) << text;
     }
@@ -39,16 +41,8 @@ TEST_F(StateFolder, HoldsNothingElse) {
   for (const char* name : {"", ".", "..", "../x.tif", "a/../../x.tif", "a/..", "/etc/passwd", "/x", "a/"})
     refuse(name);
   refuse((folder_ / "x.tif").string());
-  for (const std::string& name : {std::string("x.tif\0.txt", 10), std::string("a\nb.tif")}) {
-    try {
-      FAIL() << "taken for " << fileWithin(folder_, name);
-    } catch (const InvalidParameter& problem) {
-      const std::string text = problem.what();
-      EXPECT_NE(text.find("?"), std::string::npos) << text;
-      EXPECT_NE(text.find(folder_.string()), std::string::npos) << text;
-      EXPECT_EQ(text.find('\n'), std::string::npos) << text;
-    }
-  }
+  refuse(std::string("x.tif\0.txt", 10), "x.tif?.txt");
+  refuse("a\nb.tif", "a?b.tif");
   fs::create_directories(folder_ / "inner");
   refuse("inner");
 }

@@ -59,7 +59,8 @@ TEST(MeanHeights, OfPointsEvenlyAboutTheMiddlesAreThePlane) {
     for (int j = 0; j < grid.rows; ++j) {
       for (int i = 0; i < grid.columns; ++i) {
         const std::size_t k = grid.index(i, j);
-        if (given[k] != 0) EXPECT_NEAR(found.values[k], plane.at(grid.x(i), grid.y(j)), 1e-5);
+        if (given[k] == 0) continue;
+        EXPECT_NEAR(found.values[k], plane.at(grid.x(i), grid.y(j)), 1e-5);
       }
     }
   }
@@ -148,14 +149,22 @@ TEST(HighestTriangles, CountInAnyOrder) {
 }
 
 TEST(HighestTriangles, OfTooManyLayersAreRefused) {
-  Grid grid;
-  grid.columns = grid.rows = 4096;
-  grid.spacing = 1.0f;
+  std::mt19937 random = seededGenerator();
+  Grid grid = randomGrid(random);
+  grid.columns = grid.rows = 2000;
+  const double size = 2000.0 * static_cast<double>(grid.spacing);
+  const Eigen::Vector3d low(grid.origin_x, grid.origin_y, 0.0);
+  const Eigen::Vector3d x(size, 0.0, 0.0);
+  const Eigen::Vector3d y(0.0, size, 0.0);
   HighestTriangles heights(grid);
-  // Slivers that hold no middle of a cell, under which all cells are looked at.
-  const auto add = [&] { heights.add({0.1, 0.0, 0.0}, {4096.0, 4095.9, 0.0}, {4096.0, 4095.95, 0.0}); };
-  for (int layer = 0; layer < 64; ++layer) ASSERT_NO_THROW(add());
-  EXPECT_THROW(add(), InvalidParameter);
+  for (int layer = 0; layer < 16; ++layer) {
+    heights.add(low, low + x, low + y);
+    heights.add(low + x, low + y, low + x + y);
+  }
+  const auto addLayers = [&] {
+    for (int layer = 0; layer < 6; ++layer) heights.add(low, low + 2.0 * x, low + 2.0 * y);
+  };
+  EXPECT_THROW(addLayers(), InvalidParameter);
 }
 
 /// Deep enough to be nowhere bare, which the mesh shows as bed.

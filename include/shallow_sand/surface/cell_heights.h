@@ -30,14 +30,17 @@ class HighestTriangles {
  public:
   explicit HighestTriangles(const Grid& grid);
   /// Corners in either direction, finite. @throws InvalidParameter with key `triangles` when all so far cover
-  /// 2^30 cells, which takes seconds: a map has no more layers
+  /// the map more than 16 times, and 2^24 cells more: that would take ever longer
   void add(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
   const CellValues& values() const { return values_; }
 
  private:
+  void raise(std::size_t cell, double height);
+  void requireFewLayers() const;
+
   Grid grid_;
   CellValues values_;
-  std::uint64_t looked_at_ = 0;
+  std::uint64_t covered_ = 0;  ///< cells, and rows that were looked at
 };
 
 }  // namespace shallow_sand
