@@ -36,6 +36,11 @@ class FlatTriangle {
     const auto heights = std::minmax({corners[0].z(), corners[1].z(), corners[2].z()});
     lowest_ = heights.first;
     highest_ = heights.second;
+    const double rise_1 = corners_[1].z() - corners_[0].z();
+    const double rise_2 = corners_[2].z() - corners_[0].z();
+    slope_ = Eigen::Vector2d(cross({rise_1, side(0).y()}, {rise_2, -side(2).y()}),
+                             cross({side(0).x(), rise_1}, {-side(2).x(), rise_2})) /
+             twice_area_;
   }
 
   /// It has no area that would tell a height.
@@ -58,12 +63,9 @@ class FlatTriangle {
     return x;
   }
 
+  /// Only for triangles that are not upright.
   double height(const Eigen::Vector2d& place) const {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < 3; ++k)
-      sum +=
-          cross(side(k), place - corners_[k].head<2>()) * corners_[(k + 2) % 3].z();  // of the corner across
-    return std::clamp(sum / twice_area_, lowest_, highest_);
+    return std::clamp(corners_[0].z() + slope_.dot(place - corners_[0].head<2>()), lowest_, highest_);
   }
 
  private:
@@ -71,6 +73,7 @@ class FlatTriangle {
 
   Corners corners_;
   double twice_area_;
+  Eigen::Vector2d slope_;  // of height [m] by cells
   double lowest_;
   double highest_;
 };
