@@ -19,4 +19,18 @@ inline Edit randomEdit(std::mt19937& random, const Grid& grid) {
   return edit;
 }
 
+/// Depths or surfaces for some of the cells.
+inline CellValues randomCellValues(std::mt19937& random, const Grid& grid, EditOperation operation) {
+  CellValues cells{std::vector<float>(grid.cells()), std::vector<std::uint8_t>(grid.cells())};
+  const unsigned share = 1 + random() % 4;
+  const double least = operation == EditOperation::set ? 0.0 : -3.0;
+  for (std::size_t k = 0; k < grid.cells(); ++k) {
+    cells.given[k] = random() % share == 0 ? 1 : 0;
+    // What is not given may be anything.
+    cells.values[k] =
+        cells.given[k] == 0 ? std::nanf("") : static_cast<float>(uniform(random, least, 5.0) * grid.spacing);
+  }
+  return cells;
+}
+
 }  // namespace shallow_sand

@@ -1,9 +1,6 @@
 #include "field_cache.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <atomic>
 #include <boost/uuid/name_generator_sha1.hpp>
 #include <boost/uuid/uuid_io.hpp>
 #include <cstdint>
@@ -13,6 +10,8 @@
 #include <system_error>
 #include <type_traits>
 #include <vector>
+
+#include "shallow_sand/core/replace_file.h"
 
 namespace shallow_sand {
 namespace {
@@ -125,23 +124,19 @@ std::optional<SampledMesh> FieldCache::load(const std::string& key) const {
 }
 
 std::string FieldCache::store(const std::string& key, const SampledMesh& sampled) const {
-  static std::atomic<int> count{0};
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) return folder_.string() + ": " + error.message();
-  const fs::path part =
-      folder_ / (key + "." + std::to_string(::getpid()) + "." + std::to_string(count++) + kEnding);
-  {
-    std::ofstream file(part, std::ios::binary);
-    const std::string bytes = written(key, sampled);
-    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    file.close();
-    if (!file) error = std::make_error_code(std::errc::io_error);
-  }
-  if (!error) fs::rename(part, fileOf(key), error);
-  if (error) {
-    std::error_code ignored;
-    fs::remove(part, ignored);
+  try {
+    // What is left of a part that was not finished ends as files of the cache do, and is removed with them.
+    replaceFile(fileOf(key), [&](const fs::path& part) {
+      std::ofstream file(part, std::ios::binary);
+      const std::string bytes = written(key, sampled);
+      file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+      file.close();
+      if (!file) throw std::runtime_error("cannot be written");
+    });
+  } catch (const std::exception&) {
     return folder_.string() + " cannot be written";
   }
   makeRoom(fileOf(key));

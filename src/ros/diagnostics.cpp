@@ -17,8 +17,7 @@ constexpr bool kHasCuda = false;
 
 Diagnostics::Diagnostics(const ros::NodeHandle& node, const ros::NodeHandle& private_node, Backend wanted,
                          const Simulator& simulator, const std::vector<std::string>& silences)
-    : next_(ros::WallTime::now() + kPeriod),
-      updater_(node, private_node, private_node.getNamespace()) {
+    : next_(ros::WallTime::now() + kPeriod), updater_(node, private_node, private_node.getNamespace()) {
   updater_.setHardwareID("none");
   add("solver", [this] { return judgeSolver(pace_, status_); });
   add("volume", [this] { return judgeVolume(status_); });

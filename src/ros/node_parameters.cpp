@@ -3,11 +3,13 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <type_traits>
 
 #include "shallow_sand/ros/nearest_name.h"
 #include "shallow_sand/ros/parameter_table.h"
 #include "shallow_sand/scene/mesh_file.h"
+#include "shallow_sand/scene/state_folder.h"
 
 namespace shallow_sand {
 
@@ -71,6 +73,26 @@ void requireSceneKeys(const YAML::Node& yaml, const std::string& source) {
     if (std::find(scene_keys.begin(), scene_keys.end(), key) == scene_keys.end())
       throw SceneError(source + ": " + key + ": unknown; expected a known key, such as " +
                        nearestName(key, known));
+  }
+}
+
+/// Where ROS keeps what its nodes write.
+std::string defaultStateFolder() {
+  const char* home = std::getenv("ROS_HOME");
+  if (home != nullptr && *home == '/') return home + std::string("/shallow_sand");
+  home = std::getenv("HOME");
+  return home != nullptr && *home == '/' ? home + std::string("/.ros/shallow_sand") : "/tmp/shallow_sand";
+}
+
+/// @throws InvalidParameter
+void requireStateFolder(NodeParameters& parameters) {
+  if (parameters.state_folder.empty()) parameters.state_folder = defaultStateFolder();
+  if (parameters.state_folder.front() != '/')
+    throw InvalidParameter("state_folder", parameters.state_folder, "an absolute path");
+  try {
+    fileWithin(parameters.state_folder, parameters.snapshot_file);
+  } catch (const InvalidParameter& problem) {
+    throw InvalidParameter("snapshot_file", parameters.snapshot_file, problem.expected());
   }
 }
 
@@ -151,6 +173,7 @@ NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
   parameters.robots = takeRobots(yaml, source);
   try {
     for (const ParameterRow& row : parameterTable()) takeRow(yaml, source, row, parameters);
+    requireStateFolder(parameters);
     if (!parameters.mesh_file.empty()) requireMeshSuffix("mesh_file", parameters.mesh_file);
   } catch (const InvalidParameter& problem) {
     throw SceneError(source + ": " + problem.what());

@@ -92,6 +92,13 @@ std::vector<ParameterRow> makeTable() {
       words("picture", &N::picture, "the path of a file", "file for a shaded relief, written at the end"),
       words("mesh_file", &N::mesh_file, "the path of a file",
             "file for the surface, .stl or .ply, written at the end"),
+      words("state_folder", &N::state_folder, "the path of a folder",
+            "absolute; ~save and ~load stay within it; empty: ~/.ros/shallow_sand ($ROS_HOME is heeded)"),
+      number("snapshot_period", &N::snapshot_period, kSeconds, 0.0, 1e9,
+             "of simulated time after which the state is saved, again and again; 0: never"),
+      words("snapshot_file", &N::snapshot_file, "the name of a file",
+            "of those snapshots, within state_folder"),
+      choice("restore", &N::restore, "go on from snapshot_file at the start, if it is there"),
       // The bounds keep periods within what ros::Duration can hold.
       number("frame_rate", &N::frame_rate, kHertz, 0.01, 1e4,
              "how often poses are taken and the sand runs on"),

@@ -136,6 +136,7 @@ void SandBodies::move(const std::string& name, const Eigen::Isometry3d& pose, do
   motion.append(now, duration > 0.0 ? from : pose);
   if (duration > 0.0) motion.append(now + duration, pose);
   body.motion = motion;
+  body.strayed = true;
   simulator_.placeBody(body.number, motion.poseAt(now));
   if (duration > 0.0) simulator_.appendPose(body.number, now + duration, pose);
 }
@@ -181,6 +182,9 @@ void SandBodies::restore(const Snapshot& snapshot) {
 }
 
 void SandBodies::placeAnew(Body& body, const Eigen::Isometry3d& rest) {
+  // The simulator knows its way, and goes on with the same bits.
+  if (!body.of_scene.empty() && !body.strayed) return;
+  body.strayed = false;
   const double now = simulator_.time();
   Motion motion;
   if (body.of_scene.empty()) {

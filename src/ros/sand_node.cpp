@@ -53,7 +53,11 @@ SandNode::SandNode(const ros::NodeHandle& node, const ros::NodeHandle& private_n
       simulator_(build(parameters_.scene)),
       clock_(parameters_.frame_rate),
       bodies_(parameters_, transforms_, simulator_),
-      services_(private_node_, simulator_.grid().spacing, bodies_),
+      states_(private_node_, loop_calls_, parameters_, bodies_, simulator_),
+      services_(private_node_, loop_calls_, simulator_.grid().spacing, bodies_),
+      editing_(private_node_, loop_calls_, bodies_, simulator_),
+      setting_(private_node_, loop_calls_, bodies_, simulator_),
+      queries_(private_node_, loop_calls_, bodies_, simulator_),
       pour_(private_node_, bodies_, simulator_),
       body_markers_(private_node_, parameters_.scene.parameters.grid.frame),
       body_handles_(private_node_, parameters_.scene.parameters.grid.frame, clock_.length(), bodies_),
@@ -96,7 +100,8 @@ void SandNode::run(const std::function<bool()>& goesOn) {
 
 void SandNode::turn() {
   queue_.callAvailable();
-  services_.runPending();
+  loop_calls_.runPending();
+  states_.saveIfDue();
   for (Robot& robot : robots_) robot.update(node_, bodies_);
   const ros::Time now = ros::Time::now();
   if (now < last_now_) restart(last_now_ - now);

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "gdal_support.h"
+#include "shallow_sand/core/replace_file.h"
 
 namespace shallow_sand {
 namespace {
@@ -96,9 +97,11 @@ void Canvas::writePng(const std::string& path) const {
                                    0, 0, nullptr) == CE_None,
                 path);
   }
-  const DatasetPointer png(
-      gdalDriver("PNG", path).CreateCopy(path.c_str(), memory.get(), 0, nullptr, nullptr, nullptr));
-  requireGdal(png != nullptr, path);
+  replaceFile(path, [&](const std::filesystem::path& part) {
+    const DatasetPointer png(
+        gdalDriver("PNG", path).CreateCopy(part.c_str(), memory.get(), 0, nullptr, nullptr, nullptr));
+    requireGdal(png != nullptr, path);
+  });
 }
 
 }  // namespace shallow_sand

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "gdal_support.h"
+#include "shallow_sand/core/replace_file.h"
 #include "shallow_sand/scene/scene.h"
 #include "state_metadata.h"
 
@@ -40,11 +41,13 @@ auto contactBands(State& state) {
                                                                     {"contact_velocity_z", &c.velocity_z}}};
 }
 
-DatasetPointer createTiff(const std::string& path, const Grid& grid, int bands) {
+/// @param part where it is written to become `path`, which errors name
+DatasetPointer createTiff(const std::string& path, const std::filesystem::path& part, const Grid& grid,
+                          int bands) {
   const std::array<const char*, 6> options{"COMPRESS=DEFLATE", "PREDICTOR=3", "INTERLEAVE=BAND",
                                            "BIGTIFF=IF_SAFER", "TILED=YES",   nullptr};
   DatasetPointer dataset(gdalDriver("GTiff", path)
-                             .Create(path.c_str(), grid.columns, grid.rows, bands, GDT_Float32,
+                             .Create(part.c_str(), grid.columns, grid.rows, bands, GDT_Float32,
                                      const_cast<char**>(options.data())));
   requireGdal(dataset != nullptr, path);
   const double spacing = static_cast<double>(grid.spacing);
@@ -104,15 +107,12 @@ Snapshot readState(GDALDataset& dataset, const SimulatorParameters& parameters, 
   return state;
 }
 
-}  // namespace
-
-void saveState(const std::string& path, const SimulatorParameters& parameters, const Snapshot& state) {
+void writeState(const std::string& path, const std::filesystem::path& part,
+                const SimulatorParameters& parameters, const Snapshot& state) {
   const Grid grid = parameters.grid.grid();
-  const QuietGdal quiet;
-  requireSizes(path, grid, state);
   const bool with_loads = !state.fields.load.empty();
   const bool with_contacts = !state.contacts.windows.empty();
-  DatasetPointer dataset = createTiff(path, grid, 4 + (with_loads ? 4 : 0) + (with_contacts ? 7 : 0));
+  DatasetPointer dataset = createTiff(path, part, grid, 4 + (with_loads ? 4 : 0) + (with_contacts ? 7 : 0));
   int number = 0;
   const auto write = [&](const auto& bands) {
     for (const auto& band : bands) {
@@ -128,6 +128,14 @@ void saveState(const std::string& path, const SimulatorParameters& parameters, c
   }
   dataset.reset();  // writes what is still in memory
   requireGdal(CPLGetLastErrorType() < CE_Failure, path);
+}
+
+}  // namespace
+
+void saveState(const std::string& path, const SimulatorParameters& parameters, const Snapshot& state) {
+  const QuietGdal quiet;
+  requireSizes(path, parameters.grid.grid(), state);
+  replaceFile(path, [&](const std::filesystem::path& part) { writeState(path, part, parameters, state); });
 }
 
 Snapshot loadState(const std::string& path, const SimulatorParameters& parameters) {

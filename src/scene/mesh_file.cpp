@@ -1,7 +1,5 @@
 #include "shallow_sand/scene/mesh_file.h"
 
-#include <unistd.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cctype>
@@ -12,6 +10,7 @@
 #include <stdexcept>
 
 #include "shallow_sand/core/parameters.h"
+#include "shallow_sand/core/replace_file.h"
 
 /// By hand: the PLY exporter of assimp 5 announces bytes for colours and writes floats.
 namespace shallow_sand {
@@ -106,16 +105,11 @@ void requireMeshSuffix(const std::string& key, const std::string& path) {
 
 void writeMesh(const std::string& path, const SurfaceMesh& mesh) {
   requireMeshSuffix("mesh", path);
-  const fs::path part = path + "." + std::to_string(::getpid()) + ".part";
-  BinaryFile file(part);
-  suffixOf(path) == ".stl" ? writeStl(mesh, file) : writePly(mesh, file);
-  std::error_code error;
-  if (file.close()) {
-    fs::rename(part, path, error);
-    if (!error) return;
-  }
-  fs::remove(part, error);
-  throw std::runtime_error(path + ": cannot be written");
+  replaceFile(path, [&](const fs::path& part) {
+    BinaryFile file(part);
+    suffixOf(path) == ".stl" ? writeStl(mesh, file) : writePly(mesh, file);
+    if (!file.close()) throw std::runtime_error(path + ": cannot be written");
+  });
 }
 
 }  // namespace shallow_sand

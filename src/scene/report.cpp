@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "shallow_sand/core/replace_file.h"
+
 namespace shallow_sand {
 
 Report makeReport(const Simulator& simulator, const std::string& scene, double wall) {
@@ -46,13 +48,13 @@ void writeReport(const std::string& path, const Report& report) {
                                  {"volume_error", report.volume.error()},
                                  {"body_overlap_m3", report.body_overlap}};
   if (report.grains > 0) json["grains"] = report.grains;
-  std::ofstream file(path);
-  // A name need not be UTF-8, and a report with a replaced letter is better than none.
-  file << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
-  file.close();
-  if (!file) {
-    throw std::runtime_error(path + ": cannot be written");
-  }
+  replaceFile(path, [&](const std::filesystem::path& part) {
+    std::ofstream file(part);
+    // A name need not be UTF-8, and a report with a replaced letter is better than none.
+    file << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+    file.close();
+    if (!file) throw std::runtime_error(path + ": cannot be written");
+  });
 }
 
 }  // namespace shallow_sand

@@ -8,6 +8,7 @@
 
 #include "pixel_shares.h"
 #include "shallow_sand/core/parameters.h"
+#include "shallow_sand/scene/terrain_heights.h"
 #include "terrain_file.h"
 
 namespace shallow_sand {
@@ -211,6 +212,16 @@ std::string givesText(double value, const Grid& grid, std::size_t cell) {
   std::ostringstream text;
   text << "gives " << value << " at " << centreText(grid, cell);
   return text.str();
+}
+
+CellValues readTerrainHeights(const std::string& file, const Grid& grid) {
+  TerrainParameters parameters;
+  parameters.file = file;
+  const QuietGdal quiet;
+  CellValues heights{readCells(parameters, grid), std::vector<std::uint8_t>(grid.cells())};
+  std::transform(heights.values.begin(), heights.values.end(), heights.given.begin(),
+                 [](float value) { return static_cast<std::uint8_t>(std::isnan(value) ? 0 : 1); });
+  return heights;
 }
 
 std::vector<float> readTerrain(const TerrainParameters& parameters, const Grid& grid) {

@@ -271,9 +271,21 @@ void CudaEngine::setSand(const SandConstants& sand, const LocalMaterialFields& m
 
 double CudaEngine::edit(const LocalRegion& region, EditOperation operation, float value) {
   ChangeSand change = memory_.changeOf(region);
-  if (change.window.empty()) return 0.0;
   change.operation = operation;
   change.value = value;
+  return apply(change);
+}
+
+double CudaEngine::edit(EditOperation operation, const std::vector<float>& values) {
+  const CudaMemory<float> uploaded(values);
+  ChangeSand change = memory_.changeOf(wholeMap());
+  change.operation = operation;
+  change.values = uploaded.data();
+  return apply(change);
+}
+
+double CudaEngine::apply(ChangeSand& change) {
+  if (change.window.empty()) return 0.0;
   CudaMemory<double> taken(change.window.cells(), 0.0);
   memory_.bind(change, taken);
   changeSandOnGpu<<<blocksFor(change.window), kBlock, 0, stream_>>>(change);

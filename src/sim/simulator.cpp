@@ -139,6 +139,20 @@ double Ledger::error() const {
   return came > 0.0 ? std::abs(now - (came - left)) / came : 0.0;
 }
 
+Snapshot withoutBodies(Snapshot snapshot) {
+  Fields& fields = snapshot.fields;
+  const auto lay = [](std::vector<float>& load, std::vector<float>& ground) {
+    for (std::size_t k = 0; k < load.size(); ++k) ground[k] += load[k];
+    load.clear();
+  };
+  lay(fields.load, fields.depth);
+  lay(fields.load_momentum_x, fields.momentum_x);
+  lay(fields.load_momentum_y, fields.momentum_y);
+  fields.load_elevation.clear();
+  snapshot.contacts = {};
+  return snapshot;
+}
+
 class Simulator::Implementation {
  public:
   struct Body {
@@ -242,6 +256,39 @@ class Simulator::Implementation {
     finish();
     const LocalRegion region = localRegion(edit.region, grid_);
     if (windowOf(region, grid_).empty()) requireOnGrid("center", edit.region.center);
+    expectSand(region);
+    return engine_->edit(region, edit.operation, static_cast<float>(edit.value));
+  }
+
+  double setSand(EditOperation operation, const CellValues& cells) {
+    const std::vector<float> values = valuesToSet(operation, cells);
+    finish();
+    expectSand(wholeMap());
+    return engine_->edit(operation, values);
+  }
+
+  /// NaN for cells that keep their sand.
+  std::vector<float> valuesToSet(EditOperation operation, const CellValues& cells) const {
+    const float any = -std::numeric_limits<float>::infinity();
+    if (operation != EditOperation::set && operation != EditOperation::level)
+      throw InvalidParameter("operation", "neither set nor level", "one of the two");
+    if (cells.given.size() != grid_.cells()) {
+      throw InvalidParameter("given", std::to_string(cells.given.size()) + " values",
+                             std::to_string(grid_.cells()) + ", one for each cell");
+    }
+    std::vector<float> values = cells.values;
+    const auto replaceOthers = [&](float value) {
+      for (std::size_t k = 0; k < std::min(values.size(), cells.given.size()); ++k)
+        values[k] = cells.given[k] == 0 ? value : values[k];
+    };
+    replaceOthers(0.0f);
+    checkField("values", values, grid_, operation == EditOperation::set ? 0.0f : any);
+    replaceOthers(std::numeric_limits<float>::quiet_NaN());
+    return values;
+  }
+
+  /// Before sand comes or goes in a region.
+  void expectSand(const LocalRegion& region) {
     if (!bodies_.empty() && parameters_.displacement) {
       // A body that hangs high above the sand catches what comes down now.
       engine_->expectSand(region);
@@ -249,7 +296,6 @@ class Simulator::Implementation {
     }
     // Sand may have come to lie where a body is.
     placed_anew_ = placed_anew_ || !bodies_.empty();
-    return engine_->edit(region, edit.operation, static_cast<float>(edit.value));
   }
 
   /// What only looks, too, has to wait for a run that was begun.
@@ -301,6 +347,11 @@ class Simulator::Implementation {
       throw InvalidParameter("time", std::to_string(snapshot.time), "finite seconds");
     if (!(snapshot.next_step > 0.0))
       throw InvalidParameter("next_step", std::to_string(snapshot.next_step), "positive seconds");
+    const Ledger& ledger = snapshot.ledger;
+    for (const double volume : {ledger.start, ledger.poured, ledger.left}) {
+      if (!(volume >= 0.0 && std::isfinite(volume)))
+        throw InvalidParameter("ledger", std::to_string(volume), "finite cubic metres that are not negative");
+    }
     requireFit(snapshot.fields, snapshot.contacts);
     requireFit(snapshot.grains);
   }
@@ -725,6 +776,9 @@ void Simulator::placeBody(std::size_t body, const Eigen::Isometry3d& pose) {
 void Simulator::removeBody(std::size_t body) { implementation_->removeBody(body); }
 void Simulator::addPour(const Pour& pour) { implementation_->addPour(pour); }
 double Simulator::edit(const Edit& edit) { return implementation_->edit(edit); }
+double Simulator::setSand(EditOperation operation, const CellValues& cells) {
+  return implementation_->setSand(operation, cells);
+}
 void Simulator::setMaterial(const Material& material) { implementation_->setMaterial(material); }
 void Simulator::setGravity(const Eigen::Vector3d& gravity) { implementation_->setGravity(gravity); }
 Snapshot Simulator::snapshot() const { return implementation_->snapshot(); }

@@ -1,6 +1,7 @@
 #include "shallow_sand/solver/change_sand.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace shallow_sand {
 
@@ -14,6 +15,11 @@ LocalRegion localRegion(const Region& region, const Grid& grid) {
   local.half_x = std::max(static_cast<float>(0.5 * region.size.x()), 0.51f * grid.spacing);
   local.half_y = std::max(static_cast<float>(0.5 * region.size.y()), 0.51f * grid.spacing);
   return local;
+}
+
+LocalRegion wholeMap() {
+  constexpr float kAll = std::numeric_limits<float>::infinity();
+  return {0.0f, 0.0f, -1.0f, kAll, kAll};
 }
 
 Window windowOf(const LocalRegion& region, const Grid& grid) {

@@ -21,6 +21,13 @@ void compareEdits(std::mt19937& random, const RandomScene& scene) {
       EXPECT_EQ(pair.cpu.edit(edit), pair.cuda.edit(edit));
       expectSame(pair.cpu, pair.cuda);
     }
+    if (random() % 3 == 0) {
+      SCOPED_TRACE("cells set before frame " + std::to_string(frame));
+      const EditOperation operation = random() % 2 == 0 ? EditOperation::set : EditOperation::level;
+      const CellValues cells = randomCellValues(random, pair.cpu.grid(), operation);
+      EXPECT_EQ(pair.cpu.setSand(operation, cells), pair.cuda.setSand(operation, cells));
+      expectSame(pair.cpu, pair.cuda);
+    }
     pair.advance(scene.frame, 1);
   }
 }

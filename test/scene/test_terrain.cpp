@@ -12,6 +12,7 @@
 #include "shallow_sand/scene/geotiff.h"
 #include "shallow_sand/scene/scene.h"
 #include "shallow_sand/scene/simulation.h"
+#include "shallow_sand/scene/terrain_heights.h"
 #include "terrain_files.h"
 
 namespace shallow_sand {
@@ -99,6 +100,29 @@ TEST(Terrain, APlaneStaysAPlaneWhereverTheImageLies) {
           << "pixels " << side_x.pixel << " x " << side_y.pixel << " m, cell " << i << ", " << j;
     }
   }
+}
+
+/// What a scene reads, too, which names a number for the others.
+TEST(Terrain, HeightsAreThoseOfCellsThatTheFileTellsOf) {
+  std::mt19937 generator = seededGenerator();
+  const auto number = [&generator](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(generator);
+  };
+  for (int k = 0; k < 20; ++k) {
+    TestImage image;
+    image.columns = 1 + static_cast<int>(generator() % 60);
+    image.lines = 1 + static_cast<int>(generator() % 40);
+    image.transform = northUp(number(-1.0, 2.0), number(-1.0, 1.0), 0.1, 0.1, image.lines);
+    const double slope = number(-1.0, 1.0);
+    image.value = [slope](int column, int line) { return slope * column + line; };
+    writeTiff("part.tif", image);
+    const Scene scene =
+        sceneFrom("{grid: {size: [3, 2], spacing: 0.1}, bed: {file: part.tif, no_data: -7.5}}");
+    const CellValues heights = readTerrainHeights("part.tif", gridOf(scene));
+    for (std::size_t cell = 0; cell < scene.bed.size(); ++cell)
+      ASSERT_EQ(heights.given[cell] != 0 ? heights.values[cell] : -7.5f, scene.bed[cell]);
+  }
+  EXPECT_THROW(readTerrainHeights("missing.tif", GridParameters().grid()), InvalidParameter);
 }
 
 TEST(Terrain, MeansKeepTheVolume) {

@@ -1,8 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+
 #include "random_edit.h"
 #include "random_fields.h"
+#include "random_scene.h"
 #include "random_seed.h"
+#include "same_run.h"
 
 namespace shallow_sand {
 namespace {
@@ -62,6 +67,85 @@ TEST(Edits, DoWhatTheySay) {
       }
     }
   }
+}
+
+EditOperation randomSetting(std::mt19937& random) {
+  return random() % 2 == 0 ? EditOperation::set : EditOperation::level;
+}
+
+TEST(Edits, CellsAreSetAsTold) {
+  std::mt19937 random = seededGenerator();
+  for (int scene = 0; scene < 40; ++scene) {
+    const RandomSand sand = randomSand(random, 1 + random() % 60, 1 + random() % 40);
+    Simulator simulator(sand.parameters, sand.bed, sand.depth);
+    const EditOperation operation = randomSetting(random);
+    const CellValues cells = randomCellValues(random, simulator.grid(), operation);
+    const double before = simulator.ledger().now;
+    const double grown = simulator.setSand(operation, cells);
+    const Fields fields = simulator.fields();
+    for (std::size_t k = 0; k < fields.depth.size(); ++k) {
+      float expected = sand.depth[k];
+      if (cells.given[k] != 0)
+        expected =
+            operation == EditOperation::set ? cells.values[k] : std::max(cells.values[k] - sand.bed[k], 0.0f);
+      ASSERT_EQ(fields.depth[k], expected);
+    }
+    const Ledger ledger = simulator.ledger();
+    EXPECT_NEAR(ledger.now - before, grown, 1e-9 * (1.0 + std::abs(grown)));
+    EXPECT_NEAR(ledger.poured - ledger.left, grown, 1e-9 * (1.0 + ledger.poured + ledger.left));
+    simulator.advance(0.02);
+    EXPECT_LT(simulator.ledger().error(), 1e-6);
+  }
+}
+
+/// Of sand that moves, too, and among bodies.
+TEST(Edits, OneValueForAllCellsIsAnEditOfTheWholeMap) {
+  std::mt19937 random = seededGenerator();
+  for (int number = 0; number < 20; ++number) {
+    const RandomScene scene = randomScene(random, randomSand(random, 30, 20), 1, 2);
+    Simulator one = simulatorOf(scene, scene.sand.parameters);
+    Simulator other = simulatorOf(scene, scene.sand.parameters);
+    advanceFrames(one, scene.frame, 0, 4);
+    advanceFrames(other, scene.frame, 0, 4);
+    const Grid& grid = one.grid();
+    Edit edit;
+    edit.operation = randomSetting(random);
+    edit.value = uniform(random, 0.0, 5.0) * grid.spacing;
+    edit.region.shape = Region::Shape::rectangle;
+    edit.region.size = 3.0 * scene.sand.parameters.grid.size;
+    edit.region.center = scene.sand.parameters.grid.origin;
+    const CellValues all{std::vector<float>(grid.cells(), static_cast<float>(edit.value)),
+                         std::vector<std::uint8_t>(grid.cells(), 1)};
+    EXPECT_EQ(one.edit(edit), other.setSand(edit.operation, all));
+    expectSameRun(one, other);
+    advanceFrames(one, scene.frame, 4, 8);
+    advanceFrames(other, scene.frame, 4, 8);
+    expectSameRun(one, other);
+  }
+}
+
+TEST(Edits, CellsThatMakeNoSenseAreRefusedAndChangeNothing) {
+  std::mt19937 random = seededGenerator();
+  const RandomSand sand = randomSand(random, 20, 10);
+  Simulator simulator(sand.parameters, sand.bed, sand.depth);
+  const CellValues good{std::vector<float>(200, 0.1f), std::vector<std::uint8_t>(200, 1)};
+  const auto refused = [&](EditOperation operation, const std::function<void(CellValues&)>& spoil) {
+    CellValues cells = good;
+    spoil(cells);
+    EXPECT_THROW(simulator.setSand(operation, cells), InvalidParameter);
+    EXPECT_TRUE(sameBits(simulator.fields().depth, sand.depth));
+  };
+  const std::size_t k = random() % 200;
+  for (const EditOperation operation : {EditOperation::set, EditOperation::level}) {
+    refused(operation, [&](CellValues& cells) { cells.values[k] = std::nanf(""); });
+    refused(operation, [&](CellValues& cells) { cells.values[k] = INFINITY; });
+    refused(operation, [](CellValues& cells) { cells.values.pop_back(); });
+    refused(operation, [](CellValues& cells) { cells.given.push_back(1); });
+  }
+  refused(EditOperation::set, [&](CellValues& cells) { cells.values[k] = -1e-6f; });
+  refused(EditOperation::add, [](CellValues&) {});
+  refused(EditOperation::remove, [](CellValues&) {});
+  EXPECT_NO_THROW(simulator.setSand(EditOperation::set, good));
 }
 
 TEST(Edits, SandThatStaysKeepsItsVelocity) {
@@ -125,6 +209,22 @@ TEST(Edits, WakeSandThatSleeps) {
   edit.value = 0.6;
   simulator.edit(edit);
   simulator.advance(0.1);
+  EXPECT_GT(simulator.activeCells(), 0u);
+}
+
+TEST(Edits, OfSingleCellsWakeSandThatSleeps) {
+  std::mt19937 random = seededGenerator();
+  SimulatorParameters parameters;
+  parameters.backend = Backend::cpu;
+  parameters.grid.size = {4.0, 4.0};
+  const std::size_t cells = parameters.grid.grid().cells();
+  Simulator simulator(parameters, std::vector<float>(cells, 0.0f), std::vector<float>(cells, 0.2f));
+  simulator.advance(0.5);
+  ASSERT_EQ(simulator.activeCells(), 0u);
+  CellValues column{std::vector<float>(cells, 0.6f), std::vector<std::uint8_t>(cells, 0)};
+  column.given[random() % cells] = 1;
+  EXPECT_GT(simulator.setSand(EditOperation::set, column), 0.0);
+  simulator.advance(0.02);
   EXPECT_GT(simulator.activeCells(), 0u);
 }
 

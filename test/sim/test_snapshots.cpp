@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <numeric>
+
 #include "random_scene.h"
 #include "random_seed.h"
 #include "same_run.h"
@@ -72,6 +75,38 @@ TEST(Snapshots, ThatDoNotFitAreRefusedAndChangeNothing) {
   refused([](Snapshot& s) { s.time = std::nan(""); });
   refused([](Snapshot& s) { s.next_step = 0.0; });
   refused([](Snapshot& s) { s.contacts.windows = {{0, 0, 2, 2}}; });
+  refused([](Snapshot& s) { s.ledger.poured = std::nan(""); });
+  refused([](Snapshot& s) { s.ledger.start = -1.0; });
+}
+
+double sumOf(const std::vector<float>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+TEST(Snapshots, GoOnWithoutTheirBodies) {
+  std::mt19937 random = seededGenerator();
+  double held = 0.0;
+  for (int number = 0; number < 30; ++number) {
+    RandomScene scene = busyScene(random);
+    Snapshot snapshot;
+    {
+      Simulator with_bodies = simulatorOf(scene);
+      advanceFrames(with_bodies, scene.frame, 0, 10);
+      snapshot = with_bodies.snapshot();
+    }
+    scene.bodies.clear();
+    Simulator alone = simulatorOf(scene);
+    alone.restore(withoutBodies(snapshot));
+    const Fields fields = alone.fields();
+    for (std::size_t k = 0; k < fields.depth.size(); ++k)
+      ASSERT_EQ(fields.depth[k], snapshot.fields.allDepth(k));
+    held += sumOf(snapshot.fields.load);
+    const double momentum = sumOf(snapshot.fields.momentum_x) + sumOf(snapshot.fields.load_momentum_x);
+    EXPECT_NEAR(sumOf(fields.momentum_x), momentum, 1e-5 * (1.0 + std::abs(momentum)));
+    advanceFrames(alone, scene.frame, 10, 16);
+    EXPECT_LT(alone.ledger().error(), 1e-6);
+  }
+  EXPECT_GT(held, 0.0) << "no body held any sand";
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "shallow_sand/core/grid.h"
@@ -36,6 +37,12 @@ struct Fields {
   static constexpr float kDust = 0.001f;  ///< sand of a load that one does not see [m]
   /// Whether so much lies on a body that one sees it: grains that hang on to a link are no surface of sand.
   bool hasLoad(std::size_t cell) const { return !load.empty() && load[cell] >= kDust; }
+};
+
+/// Numbers for some cells of a map; one a cell, laid out as in Fields.
+struct CellValues {
+  std::vector<float> values;        ///< anything where none is given
+  std::vector<std::uint8_t> given;  ///< 0: there is no number for this cell
 };
 
 /// Sand thinner than a tenth of a cell counts as bare bed (sections 6.3 and 7.2). [m]

@@ -35,9 +35,13 @@ struct NodeParameters {
   double mesh_cells = 1e6;       ///< most cells that ~mesh shows; a larger map is shown by blocks of cells
   std::string sand_frame;        ///< instead of the scene's grid.frame, unless empty
   std::string scene_folder;      ///< that paths in the scene start from; empty: they must be absolute
-  std::string report;            ///< file for the figures at the end; empty: none
-  std::string picture;           ///< file for a shaded relief at the end; empty: none
-  std::string mesh_file;         ///< .stl or .ply for the surface at the end; empty: none
+  std::string state_folder;      ///< of ~save and ~load; absolute
+  double snapshot_period = 0.0;  ///< of simulated time after which the state is saved; 0: never [s]
+  std::string snapshot_file = "latest.tif";  ///< within the folder
+  bool restore = false;                      ///< go on from that file at the start, if it is there
+  std::string report;                        ///< file for the figures at the end; empty: none
+  std::string picture;                       ///< file for a shaded relief at the end; empty: none
+  std::string mesh_file;                     ///< .stl or .ply for the surface at the end; empty: none
 };
 
 /// Reads and checks the private parameters. @throws SceneError naming the parameter

@@ -103,6 +103,7 @@ class SandBodies {
     std::optional<Following> following;
     Motion motion;                  ///< of a body that follows no frame; simulated time
     std::vector<PoseKey> of_scene;  ///< that the scene gave it; none for other bodies
+    bool strayed = false;           ///< from what the scene gave it
     BodyStatus status;
     std::optional<BodyAppearance> appearance;  ///< none: it is not shown
   };

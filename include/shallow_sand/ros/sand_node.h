@@ -17,12 +17,17 @@
 #include "shallow_sand/ros/diagnostics.h"
 #include "shallow_sand/ros/frame_clock.h"
 #include "shallow_sand/ros/height_field_publisher.h"
+#include "shallow_sand/ros/loop_calls.h"
 #include "shallow_sand/ros/node_parameters.h"
 #include "shallow_sand/ros/particles_publisher.h"
 #include "shallow_sand/ros/pour_topic.h"
 #include "shallow_sand/ros/reconfiguration.h"
 #include "shallow_sand/ros/robot.h"
 #include "shallow_sand/ros/sand_bodies.h"
+#include "shallow_sand/ros/sand_editing.h"
+#include "shallow_sand/ros/sand_queries.h"
+#include "shallow_sand/ros/sand_setting.h"
+#include "shallow_sand/ros/sand_states.h"
 #include "shallow_sand/ros/surface_publisher.h"
 #include "shallow_sand/ros/transform_reader.h"
 #include "shallow_sand/sim/simulator.h"
@@ -41,6 +46,8 @@ namespace shallow_sand {
 /// - ~pause stops the sand (~paused: from the start on), ~step runs it on while it is paused, ~reset brings
 /// back the sand of the start;
 /// - serves ~add_body, ~move_body and ~remove_body; meshes are read and sampled beside the sand;
+/// - serves ~edit_sand, ~set_sand, ~query_surface, ~volume_in_polygon, ~save and ~load, and saves snapshots
+/// of itself;
 /// - publishes ~points, ~mesh (latched, at ~publish_rate), ~height_field and its updates, each beside the
 /// sand: the sand hands over what has changed, on the GPU while the next frame runs, and waits for nobody;
 /// and, while somebody listens, ~contacts and, if the scene has grains, ~particles;
@@ -98,7 +105,12 @@ class SandNode {
   TransformReader transforms_;
   SandBodies bodies_;
   std::vector<Robot> robots_;
+  LoopCalls loop_calls_;
+  SandStates states_;  ///< before what tells others of the sand
   BodyServices services_;
+  SandEditing editing_;
+  SandSetting setting_;
+  SandQueries queries_;
   PourTopic pour_;
   BodyMarkers body_markers_;
   BodyHandles body_handles_;

@@ -10,7 +10,7 @@ namespace shallow_sand {
 /// bodies are near the sand, `contact_ceiling`, `contact_length` [m], `contact_velocity_x`,
 /// `contact_velocity_y` [m/s]; float32, bit for bit; row 0 at the north edge (the largest y), the
 /// geotransform in the grid's frame. The rest of the snapshot, and the parameters, go into the metadata
-/// domain SHALLOW_SAND.
+/// domain SHALLOW_SAND. Whatever happens meanwhile, the file is as it was or all of the new one.
 /// @throws std::runtime_error naming the file if it cannot be written, or for fields that do not fit the grid
 void saveState(const std::string& path, const SimulatorParameters& parameters, const Snapshot& state);
 

@@ -29,6 +29,7 @@ class CudaEngine : public Engine {
   StepRun finish() override;
   void setSand(const SandConstants& sand, const LocalMaterialFields& material) override;
   double edit(const LocalRegion& region, EditOperation operation, float value) override;
+  double edit(EditOperation operation, const std::vector<float>& values) override;
   Fields fields() override;
   SandView view() override;
   void requestFields() override;
@@ -59,6 +60,7 @@ class CudaEngine : public Engine {
     CudaMemory<unsigned char> changed;
   };
 
+  double apply(ChangeSand& change);
   void sendBodies(const std::vector<PlacedBody>& before, std::vector<Placement> placements);
   void arePlaced(const std::vector<PlacedBody>& bodies);
   BodiesOnGpu bodiesOnGpu();

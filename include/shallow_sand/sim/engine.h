@@ -59,6 +59,8 @@ class Engine {
   virtual void setSand(const SandConstants& sand, const LocalMaterialFields& material) = 0;
   /// Changes the sand at once. Returns by how much it grew [m³].
   virtual double edit(const LocalRegion& region, EditOperation operation, float value) = 0;
+  /// The same for the whole map, with a value [m] for each cell; NaN where the sand stays as it is.
+  virtual double edit(EditOperation operation, const std::vector<float>& values) = 0;
 
   virtual Fields fields() = 0;
   /// The fields without a copy where the host can read them, else a request and its answer; valid until

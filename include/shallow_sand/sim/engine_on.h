@@ -103,9 +103,14 @@ class EngineOn : public SteppedEngine {
     ChangeSand change = memory_.changeOf(region);
     change.operation = operation;
     change.value = value;
-    Memory<double> taken(change.window.cells(), 0.0);
-    apply(change, taken);
-    return memory_.book(taken);
+    return applyOnce(change);
+  }
+  double edit(EditOperation operation, const std::vector<float>& values) override {
+    const Memory<float> uploaded = Sand::uploaded(values);
+    ChangeSand change = memory_.changeOf(wholeMap());
+    change.operation = operation;
+    change.values = uploaded.data();
+    return applyOnce(change);
   }
 
   Fields fields() override {
@@ -423,6 +428,11 @@ class EngineOn : public SteppedEngine {
     return bins;
   }
 
+  double applyOnce(ChangeSand& change) {
+    Memory<double> taken(change.window.cells(), 0.0);
+    apply(change, taken);
+    return memory_.book(taken);
+  }
   void apply(ChangeSand& change, Memory<double>& taken) {
     memory_.bind(change, taken);
     executor_.forEachCell(change.window, change);

@@ -86,6 +86,9 @@ struct Snapshot {
   Grains grains;  ///< those that there are; if it has none, grains start anew
 };
 
+/// The same sand without bodies: what they held lies on the ground under it.
+Snapshot withoutBodies(Snapshot snapshot);
+
 /// The one façade over the solver, its bodies and its backends. Not thread-safe; several may live in one
 /// process.
 class Simulator {
@@ -123,6 +126,11 @@ class Simulator {
   /// left. @throws InvalidParameter also if the region lies outside of the grid
   double edit(const Edit& edit);
 
+  /// Gives the sand of many cells other depths now, or other surfaces, as `edit` does; the others keep
+  /// theirs. Returns by how much it grew [m³]; the ledger counts it as poured or left.
+  /// @param operation set or level @throws InvalidParameter also for numbers that are not finite, or depths
+  /// that are negative: then nothing has changed
+  double setSand(EditOperation operation, const CellValues& cells);
   /// From now on the sand is of this kind; all of it wakes up, and whatever no longer holds slides. The sand
   /// goes on as one that was built with the material and took over this one's snapshot. What a map gave at
   /// the start stays. @throws InvalidParameter also for a value other than the present one where a map gives

@@ -24,6 +24,8 @@ struct LocalRegion {
 };
 
 LocalRegion localRegion(const Region& region, const Grid& grid);
+/// All cells of any grid.
+LocalRegion wholeMap();
 /// Cells whose centres may be in a region.
 Window windowOf(const LocalRegion& region, const Grid& grid);
 
@@ -57,6 +59,8 @@ struct ChangeSand {
   LocalRegion region;
   EditOperation operation;
   float value;  ///< [m]
+  const float*
+      values;  ///< one a cell instead, NaN for cells that stay as they are; null: `value` for all [m]
 
   /// Becomes a change by a volume [m³] that falls on an area [m²].
   SHALLOW_SAND_HOST_DEVICE void pour(double volume, double area) {
@@ -72,42 +76,45 @@ struct ChangeSand {
   SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {
     if (!covers(i, j)) return;
     const long long at = static_cast<long long>(j) * columns + i;
+    const float amount = values == nullptr ? value : values[at];
+    if (amount != amount) return;
     double grown = 0.0;
     if (hanging.isAt(at)) {
       const float load = hanging.depth[at];
-      grown = become(hanging.depth[at], hanging.momentum_x[at], hanging.momentum_y[at], changedLoad(at));
-      grown += become(depth[at], momentum_x[at], momentum_y[at], changedUnder(at, load));
+      grown =
+          become(hanging.depth[at], hanging.momentum_x[at], hanging.momentum_y[at], changedLoad(at, amount));
+      grown += become(depth[at], momentum_x[at], momentum_y[at], changedUnder(at, load, amount));
     } else {
-      grown = become(depth[at], momentum_x[at], momentum_y[at], changed(depth[at], bed[at]));
+      grown = become(depth[at], momentum_x[at], momentum_y[at], changed(depth[at], bed[at], amount));
     }
     taken[static_cast<long long>(j - window.row_begin) * window.columns() + (i - window.column_begin)] +=
         grown;
   }
 
  private:
-  SHALLOW_SAND_HOST_DEVICE float changed(float h, float b) const {
+  SHALLOW_SAND_HOST_DEVICE float changed(float h, float b, float amount) const {
     switch (operation) {
       case EditOperation::add:
-        return h + value;
+        return h + amount;
       case EditOperation::remove:
-        return maximum(h - value, 0.0f);
+        return maximum(h - amount, 0.0f);
       case EditOperation::set:
-        return value;
+        return amount;
       default:
-        return maximum(value - b, 0.0f);
+        return maximum(amount - b, 0.0f);
     }
   }
 
   /// Sand comes and goes from above: a body catches what falls, and what is taken is taken from it first.
-  SHALLOW_SAND_HOST_DEVICE float changedLoad(long long at) const {
-    if (operation == EditOperation::set) return maximum(value - hanging.ceiling[at], 0.0f);
-    return changed(hanging.depth[at], hanging.elevation[at]);
+  SHALLOW_SAND_HOST_DEVICE float changedLoad(long long at, float amount) const {
+    if (operation == EditOperation::set) return maximum(amount - hanging.ceiling[at], 0.0f);
+    return changed(hanging.depth[at], hanging.elevation[at], amount);
   }
   /// @param load what lay above before [m]
-  SHALLOW_SAND_HOST_DEVICE float changedUnder(long long at, float load) const {
+  SHALLOW_SAND_HOST_DEVICE float changedUnder(long long at, float load, float amount) const {
     if (operation == EditOperation::add) return depth[at];
-    if (operation == EditOperation::remove) return maximum(depth[at] - maximum(value - load, 0.0f), 0.0f);
-    return minimum(changed(depth[at], bed[at]), hanging.ceiling[at]);
+    if (operation == EditOperation::remove) return maximum(depth[at] - maximum(amount - load, 0.0f), 0.0f);
+    return minimum(changed(depth[at], bed[at], amount), hanging.ceiling[at]);
   }
 
   /// Gives sand a new depth. Returns by how much it grew. [m]
