@@ -177,6 +177,8 @@ TEST(PolygonVolume, OfConcavePolygonsIsThatOfTheirParts) {
       parts.on_ground += sign * part.on_ground;
       parts.on_bodies += sign * part.on_bodies;
     }
+    // A triangle that the middle lies far beside runs the other way round.
+    if (parts.area < 0.0) parts = {-parts.on_ground, -parts.on_bodies, -parts.area};
     expectNear(volumeInPolygon(sand.grid, sand.fields, polygon), parts, 10.0 * roundingOf(sand.grid));
   }
 }
