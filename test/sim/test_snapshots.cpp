@@ -79,9 +79,7 @@ TEST(Snapshots, ThatDoNotFitAreRefusedAndChangeNothing) {
   refused([](Snapshot& s) { s.ledger.start = -1.0; });
 }
 
-double sumOf(const std::vector<float>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0);
-}
+double sumOf(const std::vector<float>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
 TEST(Snapshots, GoOnWithoutTheirBodies) {
   std::mt19937 random = seededGenerator();
