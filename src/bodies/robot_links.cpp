@@ -52,6 +52,9 @@ std::string contentOf(const std::string& path) {
 std::string retrieve(const std::string& uri) {
   if (uri.find("://") == std::string::npos) return contentOf(uri);
   const std::string file_scheme = "file://";
+  // The library would fetch others from wherever they lead.
+  if (uri.rfind(file_scheme, 0) != 0 && uri.rfind("package://", 0) != 0)
+    throw InvalidParameter("mesh", "'" + uri + "'", "package://PACKAGE/PATH or file:///PATH");
   std::error_code error;
   if (uri.rfind(file_scheme, 0) == 0) {
     // Before it fills the memory. What is not found here may be written otherwise, such as with %20.

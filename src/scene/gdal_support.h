@@ -35,6 +35,12 @@ inline void requireGdal(bool succeeded, const std::string& path) {
   }
 }
 
+/// Whether GDAL would look for a path elsewhere than in the file system: over the network, in archives, in
+/// the output of programs. Its files in memory are ours.
+inline bool leadsElsewhere(const std::string& path) {
+  return path.rfind("/vsi", 0) == 0 && path.rfind("/vsimem/", 0) != 0;
+}
+
 struct CloseDataset {
   void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
 };

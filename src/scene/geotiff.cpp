@@ -141,6 +141,8 @@ void saveState(const std::string& path, const SimulatorParameters& parameters, c
 Snapshot loadState(const std::string& path, const SimulatorParameters& parameters) {
   const QuietGdal quiet;
   const std::array<const char*, 2> drivers{"GTiff", nullptr};
+  if (leadsElsewhere(path))
+    throw SceneError(path + ": is no file; expected a state that sand_run --save wrote");
   const DatasetPointer dataset(
       GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data()));
   if (dataset == nullptr)

@@ -13,7 +13,8 @@ namespace {
 
 DatasetPointer openImage(const TerrainParameters& parameters) {
   VSIStatBufL status;
-  if (VSIStatL(parameters.file.c_str(), &status) != 0 || !VSI_ISREG(status.st_mode)) {
+  if (leadsElsewhere(parameters.file) || VSIStatL(parameters.file.c_str(), &status) != 0 ||
+      !VSI_ISREG(status.st_mode)) {
     failTerrain(parameters, "is no file", "the path of a GeoTIFF, an ESRI ASCII grid or a PNG");
   }
   // GDAL knows many more, some of which reach for other files or the network.

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """What goes wrong is said in one clear line, and the node lives on, or ends with exit code 2 if it cannot start."""
 import os
+import socket
 import struct
 import tempfile
 import unittest
@@ -50,7 +51,10 @@ class Faults(unittest.TestCase):
                 with open(os.path.join(folder, name + ".stl"), "wb") as file:
                     file.write(content)
             names = ["missing"] + list(contents)
+            caller = socket.create_server(("127.0.0.1", 0))
+            caller.setblocking(False)
             links = [link(name, f'<mesh filename="file://{folder}/{name}.stl"/>') for name in names]
+            links += [link("fetched", f'<mesh filename="http://127.0.0.1:{caller.getsockname()[1]}/a.stl"/>')]
             links += [link("huge", '<box size="1e6 1e6 1e6"/>'), link("good")]
             rospy.set_param("/robot_description", robot("patchwork", *links))
             with RunningNode("meshes", SCENE) as node:
@@ -59,9 +63,13 @@ class Faults(unittest.TestCase):
                 self.assertEqual([body.name for body in status.bodies], ["good", "huge"])
                 for name in names:
                     self.assertEqual(len(node.wait_for_error(f"'{name}'", name + ".stl", "left out")), 1, name)
+                self.assertEqual(len(node.wait_for_error("'fetched'", "http://", "expected package://", "left out")), 1)
+                with self.assertRaises(BlockingIOError, msg="somebody called"):
+                    caller.accept()
+                caller.close()
                 self.assertEqual(len(node.wait_for_error("link huge", "so large", "sampled every")), 1)
                 node.assert_well(self)
-                self.assertEqual(len(node.error_lines("left out")), len(names), node.error_lines())
+                self.assertEqual(len(node.error_lines("left out")), len(names) + 1, node.error_lines())
 
     def expect_refusal(self, name, changes, *words):
         with RunningNode(name, dict(SCENE, **changes)) as node:

@@ -1,22 +1,25 @@
 #!/usr/bin/python3
 """Everything at once, at random and for as long as one likes: `seconds` as private parameter (scripts/soak sets it).
 
-Services, messages, hostile ones too, tf that stops, jumps and lies, a clock that stops, races, leaps and goes back, robots that restart,
+Services, messages, hostile ones too, tf that stops (as when a robot starts anew), jumps and lies, a clock that stops, races, leaps and goes back,
 subscribers that come and vanish. Meanwhile and afterwards: the node lives and answers, its ledger is even, its memory does not grow."""
 import math
 import os
 import random
-import threading
+import tempfile
 import time
 import unittest
 
 import rospy
 import rostest
-from geometry_msgs.msg import Point, PointStamped, Pose, PoseStamped, Quaternion
+from dynamic_reconfigure.msg import Config, DoubleParameter
+from dynamic_reconfigure.srv import Reconfigure
+from geometry_msgs.msg import Point, Point32, PointStamped, PolygonStamped, Pose, PoseStamped, Quaternion
 from sand_test import SCENE, Place, RunningNode, World, link, robot
 from sensor_msgs.msg import PointCloud2
 from shallow_sand.msg import HeightField, HeightFieldUpdate, PourSand
-from shallow_sand.srv import AddBody, MoveBody, RemoveBody, Step
+from shallow_sand.srv import (AddBody, EditSand, EditSandRequest, MoveBody, QuerySurface, QuerySurfaceRequest, RemoveBody, SetSand,
+                              StateFile, Step, VolumeInPolygon)
 from shape_msgs.msg import SolidPrimitive
 from std_srvs.srv import SetBool, Trigger
 from visualization_msgs.msg import Marker
@@ -85,6 +88,42 @@ class Chaos:
     def reset(self):
         self.service("reset", Trigger)
 
+    def region(self):
+        center = PointStamped(point=Point(self.number(0, 1), self.number(0, 1), 0.0))
+        center.header.frame_id = self.chance.choice(["sand", "sand", "blade", "", "nowhere"])
+        return dict(center=center, shape=self.chance.choice([0, 1, 9]), radius=self.number(0.01, 0.3),
+                    size_x=self.number(0.01, 0.5), size_y=self.number(0.01, 0.5))
+
+    def edit_sand(self):
+        self.service("edit_sand", EditSand, EditSandRequest(operation=self.chance.choice([0, 1, 2, 3, 9]),
+                                                            value=self.number(0.0, 0.3), **self.region()))
+
+    def set_sand(self):
+        self.service("set_sand", SetSand, self.chance.choice(["depth", "surface", "height"]),
+                     self.chance.choice(["", "", "", "/etc/passwd", "no.tif"]),
+                     self.chance.choice([self.node.name + "/points", self.node.name + "/mesh", "/nothing", "/tf"]),
+                     self.chance.choice([0.1, 0.1, -1.0, float("nan")]))
+
+    def ask(self):
+        request = QuerySurfaceRequest(points=[Point(self.number(0, 1), self.number(0, 1), 0.0) for _ in range(20)])
+        request.header.frame_id = self.chance.choice(["sand", "blade", "", "nowhere"])
+        self.service("query_surface", QuerySurface, request)
+        polygon = PolygonStamped()
+        polygon.header.frame_id = request.header.frame_id
+        corners = [(self.number(0, 1), self.number(0, 1)) for _ in range(self.chance.randrange(6))]
+        # 32 bits hold no 1e300.
+        polygon.polygon.points = [Point32(*(1e30 if abs(c) == 1e300 else c for c in corner), 0.0) for corner in corners]
+        self.service("volume_in_polygon", VolumeInPolygon, polygon)
+
+    def save_and_load(self):
+        self.service(self.chance.choice(["save", "load"]), StateFile,
+                     self.chance.choice(["a.tif", "a.tif", "b/c.tif", "../x.tif", "/etc/passwd", "", "none.tif"]))
+
+    def reconfigure(self):
+        names = ["friction_angle", "layer_depth", "gravity_x", "gravity_z", "publish_rate"]
+        request = Config(doubles=[DoubleParameter(self.chance.choice(names), self.number(-20.0, 40.0))])
+        self.service("reconfigure/set_parameters", Reconfigure, request)
+
     def subscribe(self):
         topic, kind = self.chance.choice([("points", PointCloud2), ("mesh", Marker), ("height_field", HeightField),
                                           ("height_field_updates", HeightFieldUpdate)])
@@ -108,7 +147,7 @@ class Chaos:
 
     def act(self):
         action = self.chance.choice([self.add_body, self.move_body, self.remove_body, self.pour, self.pour, self.pause_and_step,
-                                     self.reset, self.subscribe, self.unsubscribe, self.disturb_tf, self.disturb_clock])
+                                     self.edit_sand, self.set_sand, self.ask, self.save_and_load, self.reconfigure, self.reset, self.subscribe, self.unsubscribe, self.disturb_tf, self.disturb_clock])
         self.done = self.done[-20:] + [action.__name__]
         action()
 
@@ -138,7 +177,9 @@ class Soak(unittest.TestCase):
         seed = rospy.get_param("~seed", random.randrange(1 << 31))
         print("seed", seed)
         rospy.set_param("/robot_description", robot("digger", link("blade")))
-        with World({"blade": sweep}) as world, RunningNode("soaked", dict(SCENE, threads=2)) as node:
+        states = tempfile.TemporaryDirectory()
+        parameters = dict(SCENE, threads=2, state_folder=states.name, snapshot_period=0.5)
+        with World({"blade": sweep}) as world, RunningNode("soaked", parameters) as node:
             node.body("blade", lambda body: body.state == body.MOVING)
             chaos = Chaos(node, world, seed)
             memories = []

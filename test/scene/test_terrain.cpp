@@ -1,5 +1,8 @@
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <ogr_spatialref.h>
+#include <sys/socket.h>
+#include <unistd.h>
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>
@@ -470,6 +473,25 @@ TEST(Terrain, AFileThatEndsEarlyIsRefusedAtOnce) {
   const std::string error = errorOf("{grid: {size: [2, 1], spacing: 1}, bed: {file: cut.asc}}");
   EXPECT_EQ(error.rfind("test.yaml:1: bed.file: ./cut.asc cannot be read (", 0), 0u) << error;
   EXPECT_NE(error.find(kFormats), std::string::npos) << error;
+}
+
+TEST(Terrain, NothingIsFetched) {
+  const int server = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t length = sizeof(address);
+  ASSERT_EQ(bind(server, reinterpret_cast<sockaddr*>(&address), length), 0);
+  ASSERT_EQ(listen(server, 4), 0);
+  ASSERT_EQ(getsockname(server, reinterpret_cast<sockaddr*>(&address), &length), 0);
+  const std::string path =
+      "/vsicurl/http://127.0.0.1:" + std::to_string(ntohs(address.sin_port)) + "/dem.tif";
+  EXPECT_EQ(errorOf("{grid: {size: [2, 1], spacing: 1}, bed: {file: " + path + "}}"),
+            "test.yaml:1: bed.file: " + path +
+                " is no file; expected the path of a GeoTIFF, an ESRI ASCII grid or a PNG");
+  EXPECT_EQ(accept(server, nullptr, nullptr), -1) << "somebody called";
+  EXPECT_EQ(errno, EAGAIN);
+  close(server);
 }
 
 INSTANTIATE_TEST_SUITE_P(
