@@ -55,9 +55,12 @@ BodyGeometry geometryOf(const AddBody::Request& request, double sand_spacing) {
 
 }  // namespace
 
-BodyServices::BodyServices(const ros::NodeHandle& node, LoopCalls& loop, double sand_spacing,
-                           SandBodies& bodies)
-    : sand_spacing_(sand_spacing), bodies_(bodies), services_(node, loop) {
+BodyServices::BodyServices(const ros::NodeHandle& node, LoopCalls& loop, const GridParameters& grid,
+                           SandBodies& bodies, TransformReader& transforms)
+    : sand_spacing_(grid.spacing),
+      bodies_(bodies),
+      pose_topics_(node, grid.frame, transforms),
+      services_(node, loop) {
   // The log tells of what was done, too: it happens seldom.
   const auto told = [](const char* service, const std::string& name, const std::string& message) {
     ROS_INFO_STREAM(service << " " << name << ": " << message);
@@ -84,16 +87,23 @@ std::string BodyServices::add(const AddBody::Request& request) {
   if (request.follow && request.handle) {
     throw InvalidParameter("handle", "given beside follow", "one of the two: tf moves what follows a frame");
   }
+  const bool has_topic = !request.pose_topic.empty();
+  if (has_topic && (request.follow || request.handle)) {
+    throw InvalidParameter("pose_topic", "given beside follow or handle", "one of them to move the body");
+  }
   services_.inLoop([&] {
     bodies_.requireFree(request.name);
-    if (!request.follow) bodies_.poseOf(frame);
+    if (!request.follow && !has_topic) bodies_.poseOf(frame);
   });
   const ros::WallTime begin = ros::WallTime::now();
   const BodyGeometry geometry = geometryOf(request, sand_spacing_);
   const double duration = (ros::WallTime::now() - begin).toSec();
   const BodyAppearance appearance{lookOf(request), request.handle != 0};
   services_.inLoop([&] {
-    if (request.follow) {
+    if (has_topic) {
+      const TfFrame own{pose_topics_.follow(request.name, request.pose_topic)};
+      bodies_.addFollowing(request.name, "", own, geometry.field, appearance);
+    } else if (request.follow) {
       bodies_.addFollowing(request.name, "", {frame, pose}, geometry.field, appearance);
     } else {
       bodies_.addPlaced(request.name, bodies_.poseOf(frame) * pose, geometry.field, appearance);
@@ -106,7 +116,10 @@ std::string BodyServices::add(const AddBody::Request& request) {
 }
 
 std::string BodyServices::remove(const RemoveBody::Request& request) {
-  services_.inLoop([&] { bodies_.remove(request.name); });
+  services_.inLoop([&] {
+    bodies_.remove(request.name);
+    pose_topics_.forget(request.name);
+  });
   return "removed";
 }
 

@@ -54,7 +54,7 @@ SandNode::SandNode(const ros::NodeHandle& node, const ros::NodeHandle& private_n
       clock_(parameters_.frame_rate),
       bodies_(parameters_, transforms_, simulator_),
       states_(private_node_, loop_calls_, parameters_, bodies_, simulator_),
-      services_(private_node_, loop_calls_, simulator_.grid().spacing, bodies_),
+      services_(private_node_, loop_calls_, parameters_.scene.parameters.grid, bodies_, transforms_),
       editing_(private_node_, loop_calls_, bodies_, simulator_),
       setting_(private_node_, loop_calls_, bodies_, simulator_),
       queries_(private_node_, loop_calls_, bodies_, simulator_),

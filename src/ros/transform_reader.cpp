@@ -56,6 +56,12 @@ TransformReader::TransformReader() {
   spinner_.start();
 }
 
+void TransformReader::take(const geometry_msgs::TransformStamped& transform) {
+  tf2_msgs::TFMessage message;
+  message.transforms.push_back(transform);
+  read(message, "a pose", false);
+}
+
 void TransformReader::restart() {
   const std::lock_guard<std::mutex> lock(mutex_);
   buffer_.clear();

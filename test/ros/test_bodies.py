@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Which bodies are in the sand: links of several robots, chosen by patterns; bodies of the scene; bodies added, moved and removed
 while the node runs."""
+import math
 import unittest
 
 import rospy
@@ -111,6 +112,34 @@ class Bodies(unittest.TestCase):
             wait_for_depth(node, 0.2, 0.2, lambda depth: depth > 0.2 * DEPTH)
             node.assert_well(self)
             self.assertEqual(len(node.error_lines()), 1, node.error_lines())  # the refusal
+
+    def test_a_tool_without_tf(self):
+        frames = {"blade": lambda _: Place(0.5, 0.5, 2.0)}
+        with World(frames) as world, RunningNode("poses", SCENE) as node:
+            call = Services(node)
+            topic = rospy.Publisher("/hand", PoseStamped, queue_size=10)
+            added = call("add_body", name="tool", shape=box(0.3, 0.3, 0.4), pose_topic="/hand")
+            self.assertTrue(added.success, added.message)
+            self.assertEqual(node.body("tool").state, BodyStatus.WAITING)
+
+            def hand(stamp, z=0.2, length=1.0):
+                message = pose(0.6 + 0.1 * math.sin(stamp), 0.4, z, orientation=(0.0, 0.0, 0.0, length))
+                message.header.stamp = rospy.Time.from_sec(stamp)
+                topic.publish(message)
+            world.frames["hand"] = hand
+            self.assertEqual(node.body("tool", is_state(BodyStatus.MOVING)).jumps, 0)
+            wait_for_depth(node, 0.6, 0.4, lambda depth: depth < 0.1 * DEPTH)
+            # What is no pose is refused, and said of the body.
+            world.frames["hand"] = lambda stamp: hand(stamp, length=3.0)
+            self.assertIn("length 1", node.body("tool", is_state(BodyStatus.STALE)).problem)
+            world.frames["hand"] = hand
+            node.body("tool", is_state(BodyStatus.MOVING))
+            self.refuse(call("add_body", name="other", shape=box(0.1, 0.1, 0.1), pose_topic="no topic"), "pose_topic", "no topic")
+            self.refuse(call("add_body", name="other", shape=box(0.1, 0.1, 0.1), pose_topic="/hand", handle=True),
+                        "pose_topic", "one of them")
+            self.assertTrue(call("remove_body", name="tool").success)
+            wait_for_depth(node, 0.6, 0.4, lambda depth: depth > 0.2 * DEPTH)
+            node.assert_well(self)
 
     def test_what_services_refuse(self):
         with World({"blade": lambda _: Place(0.5, 0.5, 2.0)}), RunningNode("refusals", SCENE) as node:

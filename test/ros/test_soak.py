@@ -60,7 +60,7 @@ class Chaos:
         shape = SolidPrimitive(type=self.chance.choice([1, 2, 3, 3, 4, 77]))
         shape.dimensions = [self.number(0.02, 0.3) for _ in range(self.chance.choice([0, 1, 2, 3, 3]))]
         answer = self.service("add_body", AddBody, name, shape, "", Point(0, 0, 0), "", self.pose(),
-                              self.chance.random() < 0.2, self.chance.random() < 0.2)
+                              self.chance.random() < 0.2, self.chance.choice(["", "", "", "/tool", "no topic"]), self.chance.random() < 0.2)
         if answer.success:
             self.added.add(name)
 

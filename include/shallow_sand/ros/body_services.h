@@ -5,6 +5,7 @@
 #include "shallow_sand/AddBody.h"
 #include "shallow_sand/MoveBody.h"
 #include "shallow_sand/RemoveBody.h"
+#include "shallow_sand/ros/pose_topics.h"
 #include "shallow_sand/ros/sand_bodies.h"
 #include "shallow_sand/ros/service_thread.h"
 
@@ -14,8 +15,9 @@ namespace shallow_sand {
 /// beside the sand.
 class BodyServices {
  public:
-  /// Loop and bodies must outlive this; bodies are used in the loop only.
-  BodyServices(const ros::NodeHandle& node, LoopCalls& loop, double sand_spacing, SandBodies& bodies);
+  /// Loop, bodies and transforms must outlive this; bodies are used in the loop only.
+  BodyServices(const ros::NodeHandle& node, LoopCalls& loop, const GridParameters& grid, SandBodies& bodies,
+               TransformReader& transforms);
 
  private:
   std::string add(const AddBody::Request& request);
@@ -24,6 +26,7 @@ class BodyServices {
 
   double sand_spacing_;
   SandBodies& bodies_;
+  PoseTopics pose_topics_;
   ServiceThread services_;
 };
 

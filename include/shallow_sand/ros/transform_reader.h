@@ -20,6 +20,8 @@ class TransformReader {
   TransformReader();
 
   const tf2::BufferCore& buffer() const { return buffer_; }
+  /// A transform that does not come from tf, checked like those that do.
+  void take(const geometry_msgs::TransformStamped& transform);
   /// To be called when ROS time went backwards: forgets all but static transforms.
   void restart();
   /// Why the last transform of a frame or of one of those it hangs on was refused; empty if none was.
