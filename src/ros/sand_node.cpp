@@ -154,6 +154,7 @@ void SandNode::runFrame() {
   handOverFields();
   simulator_.time();  // waits for the GPU
   busy_ += (ros::WallTime::now() - begin).toSec();
+  simulated_since_status_ += clock_.length();
   steps_in_frame_ = simulator_.progress().steps - steps;
 }
 
@@ -205,9 +206,10 @@ void SandNode::stepBy(double duration) {
     throw InvalidParameter("~step", "no ROS time yet", "a clock beyond ~tf_delay (use_sim_time is set)");
   const auto frames = std::max<std::int64_t>(1, std::llround(duration / clock_.length()));
   // Where time went on further than the sand goes now, what lies between is left out.
-  const ros::Time begin = sandTime() - ros::Duration(static_cast<double>(frames) * clock_.length());
-  if (begin > clock_.end()) {
-    clock_.skipTo(begin);
+  const double passed = sandTime().toSec() - clock_.end().toSec();
+  const double surplus = passed - static_cast<double>(frames) * clock_.length();
+  if (surplus > 0.0) {
+    clock_.skipTo(clock_.end() + ros::Duration(surplus));
     bodies_.restartClock();
   }
   const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(parameters_.tf_timeout);
@@ -226,7 +228,6 @@ void SandNode::waitForPoses(const ros::Time& time, const ros::WallTime& deadline
 
 bool SandNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
   bodies_.restore(startOf(parameters_.scene));
-  last_status_simulated_ = 0.0;
   publishStatus();
   response.success = true;
   response.message = "the sand is as it was at the start";
@@ -280,8 +281,7 @@ void SandNode::publishStatus() {
   status.header.frame_id = parameters_.scene.parameters.grid.frame;
   status.backend = toString(simulator_.backend());
   status.simulated_time = simulator_.time();
-  status.real_time_factor =
-      last_status_.isZero() ? 0.0 : (simulator_.time() - last_status_simulated_) / wall_elapsed;
+  status.real_time_factor = last_status_.isZero() ? 0.0 : simulated_since_status_ / wall_elapsed;
   status.paused = paused_;
   if (clock_.hasStarted()) status.behind = std::max(0.0, (sandTime() - clock_.end()).toSec());
   status.time_given_up = clock_.givenUp();
@@ -300,7 +300,7 @@ void SandNode::publishStatus() {
   status_.publish(status);
   diagnostics_.take(status);
   last_status_ = wall;
-  last_status_simulated_ = simulator_.time();
+  simulated_since_status_ = 0.0;
 }
 
 void SandNode::writeResults() const {

@@ -77,11 +77,14 @@ class Pace(unittest.TestCase):
 
     def test_pause_step_and_reset(self):
         scene = dict(HEAP, bodies=[SWEEP], paused=True, robot_description="")
-        with World({}), RunningNode("steps", scene) as node:
+        with World({}, start=0.0), RunningNode("steps", scene) as node:
             pause, step, reset = (service(node, *call) for call in
                                   (("pause", SetBool), ("step", Step), ("reset", Trigger)))
             self.assertTrue(node.status().paused)
             self.assertEqual(node.status().simulated_time, 0.0)
+            # Further than time has come.
+            self.assertAlmostEqual(step(9.0).simulated_time, 9.0, delta=1e-6)
+            self.assertTrue(reset().success)
             clouds = []
             for _ in range(2):
                 for k in range(1, 26):

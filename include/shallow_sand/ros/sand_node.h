@@ -128,11 +128,11 @@ class SandNode {
   std::optional<ros::Time> requested_;  ///< time of the fields that are under way from the simulator
   ros::Time last_now_;                  ///< ROS time
   ros::WallTime last_status_;
-  ros::WallTime last_bodies_;  ///< when they were shown
-  double last_status_simulated_ = 0.0;
-  double told_given_up_ = 0.0;        ///< in the log [s]
-  std::uint64_t steps_in_frame_ = 0;  ///< of the last one
-  double busy_ = 0.0;                 ///< time spent in the simulator [s]
+  ros::WallTime last_bodies_;            ///< when they were shown
+  double simulated_since_status_ = 0.0;  ///< [s]
+  double told_given_up_ = 0.0;           ///< in the log [s]
+  std::uint64_t steps_in_frame_ = 0;     ///< of the last one
+  double busy_ = 0.0;                    ///< time spent in the simulator [s]
 };
 
 }  // namespace shallow_sand
