@@ -35,7 +35,9 @@ Judgement judgeSolver(const Pace& pace, const std::optional<Status>& status) {
                        {"cells", text(status->cells)},
                        {"cells that move", text(status->active_cells)},
                        {"fastest sand", text(status->max_speed, " m/s")}};
-  if (!(pace.asked > 0.0)) {
+  if (status->paused) {
+    judgement.text = "the sand is paused; ~pause with false lets it run, ~step runs it on";
+  } else if (!(pace.asked > 0.0)) {
     judgement.text = "ROS time stands still, and so does the sand";
   } else if (pace.simulated < kSlow * pace.asked) {
     judgement.level = Judgement::warn;

@@ -35,6 +35,13 @@ TEST(JudgeSolver, TellsTimeThatStandsStillFromTimeThatNeverBegan) {
   EXPECT_TRUE(says(judgeSolver({}, std::nullopt), "/clock"));
 }
 
+TEST(JudgeSolver, SandThatIsPausedIsNoFault) {
+  Status paused;
+  paused.paused = true;
+  EXPECT_EQ(judgeSolver({}, paused).level, Judgement::ok);
+  EXPECT_TRUE(says(judgeSolver({}, paused), "~pause"));
+}
+
 TEST(JudgeVolume, LevelRisesWithTheError) {
   std::mt19937 random = seededGenerator();
   std::uniform_real_distribution<double> exponent(-12.0, 0.0);

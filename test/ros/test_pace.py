@@ -5,12 +5,13 @@ import random
 import time
 import unittest
 
+import numpy
 import rospy
 import rostest
 from rosgraph_msgs.msg import Clock
 from sand_test import SCENE, Place, RunningNode, World, link, robot, transform
 from sensor_msgs.msg import PointCloud2
-from shallow_sand.msg import BodyStatus
+from shallow_sand.msg import BodyStatus, Status
 from shallow_sand.srv import MoveBody, Step
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
@@ -128,25 +129,40 @@ class Pace(unittest.TestCase):
             tf = rospy.Publisher("/tf", TFMessage, queue_size=100)
             now = sent = 95.0
             with RunningNode(name, dict(SCENE, tf_delay=0.2)) as node:
-                rospy.wait_for_service(node.name + "/step", timeout=20.0)
+                latest = []
+                listener = rospy.Subscriber(node.name + "/status", Status, latest.append)
                 deadline = time.monotonic() + 60.0
                 while now < 103.0:
                     self.assertLess(time.monotonic(), deadline)
-                    now = min(103.0, now + chance.uniform(0.0, 0.03))
+                    # The node hears the first of all, and at 100 the link has been read.
+                    ready = [body.state for status in latest[-1:] for body in status.bodies] == [BodyStatus.MOVING]
+                    if clock.get_num_connections() > 0 and tf.get_num_connections() > 0 and (now < 100.0 or ready):
+                        now = min(103.0, now + chance.uniform(0.0, 0.03))
                     while sent < now:
                         sent = round(sent + 0.04, 6)
                         tf.publish(TFMessage([transform("blade", path(sent), sent)]))
                     clock.publish(Clock(rospy.Time.from_sec(now)))
                     rospy.rostime.wallsleep(chance.uniform(0.0, 0.02))
+                listener.unregister()
                 stamp = rospy.Time.from_sec(102.8)
                 status = node.status(lambda status: status.header.stamp >= stamp)
-                self.assertEqual(status.time_given_up, 0.0)
                 self.assertEqual([(body.jumps, body.state) for body in status.bodies], [(0, BodyStatus.MOVING)])
-                return points(node, stamp)
+                return points(node, stamp) if status.time_given_up == 0.0 else None
 
         seed = random.randrange(1 << 32)
         print("seed", seed)
-        self.assertEqual(play("first", seed), play("second", seed + 1))
+        # On a machine that other things hold up sand may be left out, which is told; then there is nothing to compare.
+        clouds = []
+        for attempt in range(5):
+            cloud = play("play_%d" % attempt, seed + attempt)
+            if cloud is not None:
+                clouds.append(cloud)
+            if len(clouds) == 2:
+                break
+        self.assertEqual(len(clouds), 2, "time was given up again and again")
+        self.assertEqual(clouds[0], clouds[1])
+        depths = numpy.frombuffer(clouds[0], dtype=numpy.float32).reshape(400, -1)[:, 3]
+        self.assertGreater(depths.max() - depths.min(), 0.05, "nothing was dug")
 
 
 if __name__ == "__main__":
