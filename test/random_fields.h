@@ -97,6 +97,17 @@ inline void varyMaterial(std::mt19937& random, RandomSand& sand) {
     sand.material.layer_depth = field(sand.parameters.grid.spacing, 20.0 * sand.parameters.grid.spacing);
 }
 
+/// Of 1 to 40 cells each way; its origin's coordinates lie within `reach` [m] of 0.
+inline Grid gridAnywhere(std::mt19937& random, double reach) {
+  Grid grid;
+  grid.columns = 1 + static_cast<int>(random() % 40);
+  grid.rows = 1 + static_cast<int>(random() % 40);
+  grid.spacing = static_cast<float>(uniform(random, 0.01, 0.5));
+  grid.origin_x = uniform(random, -reach, reach);
+  grid.origin_y = uniform(random, -reach, reach);
+  return grid;
+}
+
 inline RandomSand randomSand(std::mt19937& random, int columns, int rows) {
   RandomSand sand;
   const double spacing = std::exp(uniform(random, std::log(0.005), std::log(0.2)));

@@ -100,6 +100,20 @@ class RunningNode:
         test.assertGreater(after.volume, 0.0)
 
 
+def wait_until(condition, what, limit=20.0):
+    deadline = time.monotonic() + limit
+    while time.monotonic() < deadline:
+        if condition():
+            return
+        rospy.rostime.wallsleep(0.002)
+    raise AssertionError(f"not within {limit} s: {what}")
+
+
+def service(node, name, kind):
+    rospy.wait_for_service(f"{node.name}/{name}", timeout=20.0)
+    return rospy.ServiceProxy(f"{node.name}/{name}", kind)
+
+
 def wait_for_depth(node, x, y, condition, limit=20.0):
     """Until the depth of the sand in the cell at a place is as wanted."""
     deadline = time.monotonic() + limit

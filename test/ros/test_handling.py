@@ -1,14 +1,13 @@
 #!/usr/bin/python3
 """What hands do to the sand: it is poured and taken away by messages; bodies are seen as markers, and dragged by their handles."""
 import math
-import time
 import unittest
 
 import numpy
 import rospy
 import rostest
 from geometry_msgs.msg import Point, PointStamped, Pose, PoseStamped, Quaternion
-from sand_test import SCENE, Place, RunningNode, World, link, robot, wait_for_depth
+from sand_test import SCENE, Place, RunningNode, World, link, robot, wait_for_depth, wait_until
 from shallow_sand.msg import HeightField, HeightFieldUpdate, PourSand
 from shallow_sand.srv import AddBody, MoveBody, RemoveBody
 from shape_msgs.msg import SolidPrimitive
@@ -23,15 +22,6 @@ def pour(x, y, radius, volume, frame=""):
     message = PourSand(position=PointStamped(point=Point(x, y, 0.0)), radius=radius, volume=volume)
     message.position.header.frame_id = frame
     return message
-
-
-def wait_until(condition, what, limit=20.0):
-    deadline = time.monotonic() + limit
-    while time.monotonic() < deadline:
-        if condition():
-            return
-        rospy.rostime.wallsleep(0.02)
-    raise AssertionError(f"not within {limit} s: {what}")
 
 
 def connected(publisher):

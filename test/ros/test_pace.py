@@ -9,7 +9,7 @@ import numpy
 import rospy
 import rostest
 from rosgraph_msgs.msg import Clock
-from sand_test import SCENE, Place, RunningNode, World, link, robot, transform
+from sand_test import SCENE, Place, RunningNode, World, link, robot, service, transform
 from sensor_msgs.msg import PointCloud2
 from shallow_sand.msg import BodyStatus, Status
 from shallow_sand.srv import MoveBody, Step
@@ -19,11 +19,6 @@ from tf2_msgs.msg import TFMessage
 HEAP = dict(SCENE, sand=[{"depth": 0.1}, {"cylinder": {"center": [0.5, 0.5], "radius": 0.2, "depth": 0.3}}])
 SWEEP = {"name": "sweep", "shape": {"box": [0.1, 0.4, 0.3]},
          "motion": [{"time": 0.0, "position": [0.2, 0.5, 0.15]}, {"time": 2.0, "position": [0.8, 0.5, 0.15]}]}
-
-
-def service(node, name, kind):
-    rospy.wait_for_service(node.name + "/" + name, timeout=20.0)
-    return rospy.ServiceProxy(node.name + "/" + name, kind)
 
 
 def points(node, stamp):

@@ -9,25 +9,11 @@ import unittest
 import rospy
 import rostest
 from geometry_msgs.msg import Point, PointStamped
-from sand_test import SCENE, RunningNode
+from sand_test import SCENE, RunningNode, service, wait_until
 from shallow_sand.srv import EditSand, EditSandRequest, StateFile
 from std_msgs.msg import Header
 
 VOLUME = SCENE["sand"][0]["depth"]
-
-
-def wait_until(condition, what, limit=20.0):
-    deadline = time.monotonic() + limit
-    while time.monotonic() < deadline:
-        if condition():
-            return
-        rospy.rostime.wallsleep(0.002)
-    raise AssertionError(f"not within {limit} s: {what}")
-
-
-def service(node, name, kind):
-    rospy.wait_for_service(f"{node.name}/{name}", timeout=20.0)
-    return rospy.ServiceProxy(f"{node.name}/{name}", kind)
 
 
 def add_sand(node, depth):

@@ -12,16 +12,6 @@
 namespace shallow_sand {
 namespace {
 
-Grid randomGrid(std::mt19937& random) {
-  Grid grid;
-  grid.columns = 1 + static_cast<int>(random() % 40);
-  grid.rows = 1 + static_cast<int>(random() % 40);
-  grid.spacing = static_cast<float>(uniform(random, 0.01, 0.5));
-  grid.origin_x = uniform(random, -10.0, 10.0);
-  grid.origin_y = uniform(random, -10.0, 10.0);
-  return grid;
-}
-
 /// z by x and y.
 struct Plane {
   double slope_x;
@@ -35,7 +25,7 @@ Plane randomPlane(std::mt19937& random) { return {uniform(random, -2.0, 2.0), un
 TEST(MeanHeights, OfPointsEvenlyAboutTheMiddlesAreThePlane) {
   std::mt19937 random = seededGenerator();
   for (int scene = 0; scene < 50; ++scene) {
-    const Grid grid = randomGrid(random);
+    const Grid grid = gridAnywhere(random, 10.0);
     const Plane plane = randomPlane(random);
     const double spacing = static_cast<double>(grid.spacing);
     std::vector<Eigen::Vector3d> points;
@@ -69,7 +59,7 @@ TEST(MeanHeights, OfPointsEvenlyAboutTheMiddlesAreThePlane) {
 TEST(MeanHeights, DoNotCountWhatIsBesideTheMap) {
   std::mt19937 random = seededGenerator();
   for (int scene = 0; scene < 50; ++scene) {
-    const Grid grid = randomGrid(random);
+    const Grid grid = gridAnywhere(random, 10.0);
     MeanHeights heights(grid);
     for (int trial = 0; trial < 20; ++trial) {
       const double beyond = std::exp(uniform(random, -10.0, 600.0));
@@ -89,7 +79,7 @@ TEST(HighestTriangles, OfAPlaneAreThePlane) {
   std::mt19937 random = seededGenerator();
   std::size_t covered = 0;
   for (int scene = 0; scene < 300; ++scene) {
-    const Grid grid = randomGrid(random);
+    const Grid grid = gridAnywhere(random, 10.0);
     const Plane plane = randomPlane(random);
     const auto corner = [&] {
       const double x = grid.origin_x + uniform(random, -0.5, 1.5) * grid.columns * grid.spacing;
@@ -130,7 +120,7 @@ TEST(HighestTriangles, OfAPlaneAreThePlane) {
 
 TEST(HighestTriangles, CountInAnyOrder) {
   std::mt19937 random = seededGenerator();
-  const Grid grid = randomGrid(random);
+  const Grid grid = gridAnywhere(random, 10.0);
   const double size = 2.0 * static_cast<double>(grid.spacing) * std::max(grid.columns, grid.rows);
   const Eigen::Vector3d a(grid.origin_x - size, grid.origin_y - size, 0.0);
   const Eigen::Vector3d b(grid.origin_x + 4.0 * size, grid.origin_y - size, 0.0);
@@ -150,7 +140,7 @@ TEST(HighestTriangles, CountInAnyOrder) {
 
 TEST(HighestTriangles, OfTooManyLayersAreRefused) {
   std::mt19937 random = seededGenerator();
-  Grid grid = randomGrid(random);
+  Grid grid = gridAnywhere(random, 10.0);
   grid.columns = grid.rows = 400;
   const double size = 400.0 * static_cast<double>(grid.spacing);
   const Eigen::Vector3d low(grid.origin_x, grid.origin_y, 0.0);
@@ -171,7 +161,7 @@ TEST(HighestTriangles, OfTooManyLayersAreRefused) {
 TEST(CellHeights, OfTheSandsOwnPointsAndMeshAreTheSand) {
   std::mt19937 random = seededGenerator();
   for (int scene = 0; scene < 30; ++scene) {
-    Grid grid = randomGrid(random);
+    Grid grid = gridAnywhere(random, 10.0);
     grid.columns += 1;  // a mesh needs two of each
     grid.rows += 1;
     const std::vector<float> waves = randomWaves(random, grid);

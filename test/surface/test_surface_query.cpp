@@ -9,17 +9,6 @@
 namespace shallow_sand {
 namespace {
 
-/// Of 1 to 40 cells each way, anywhere.
-Grid randomGrid(std::mt19937& random) {
-  Grid grid;
-  grid.columns = 1 + static_cast<int>(random() % 40);
-  grid.rows = 1 + static_cast<int>(random() % 40);
-  grid.spacing = static_cast<float>(uniform(random, 0.01, 0.5));
-  grid.origin_x = uniform(random, -100.0, 100.0);
-  grid.origin_y = uniform(random, -100.0, 100.0);
-  return grid;
-}
-
 double extentX(const Grid& grid) { return grid.columns * static_cast<double>(grid.spacing); }
 double extentY(const Grid& grid) { return grid.rows * static_cast<double>(grid.spacing); }
 
@@ -38,7 +27,7 @@ Fields noSand(const Grid& grid) {
 TEST(SurfaceQuery, IsExactOnPlanesUpToTheEdges) {
   std::mt19937 random = seededGenerator();
   for (int scene = 0; scene < 200; ++scene) {
-    const Grid grid = randomGrid(random);
+    const Grid grid = gridAnywhere(random, 100.0);
     // Of one cell across, nothing tells a slope.
     const double slope_x = grid.columns > 1 ? uniform(random, -1.0, 1.0) : 0.0;
     const double slope_y = grid.rows > 1 ? uniform(random, -1.0, 1.0) : 0.0;
@@ -73,7 +62,7 @@ TEST(SurfaceQuery, IsExactOnPlanesUpToTheEdges) {
 TEST(SurfaceQuery, IsTheCellsOwnInItsMiddle) {
   std::mt19937 random = seededGenerator();
   for (int scene = 0; scene < 50; ++scene) {
-    const Grid grid = randomGrid(random);
+    const Grid grid = gridAnywhere(random, 100.0);
     Fields fields = noSand(grid);
     fields.addLoads();
     for (std::size_t k = 0; k < grid.cells(); ++k) {
@@ -98,7 +87,7 @@ TEST(SurfaceQuery, IsTheCellsOwnInItsMiddle) {
 TEST(SurfaceQuery, KnowsWhatIsBesideTheMap) {
   std::mt19937 random = seededGenerator();
   for (int scene = 0; scene < 50; ++scene) {
-    const Grid grid = randomGrid(random);
+    const Grid grid = gridAnywhere(random, 100.0);
     const Fields fields = noSand(grid);
     const Eigen::Vector2d inside = randomPlaceOn(random, grid);
     const double beyond = uniform(random, 1e-6, 10.0);
