@@ -2,10 +2,6 @@
 set(SHALLOW_SAND_CUDA AUTO CACHE STRING "CUDA backend: AUTO (if nvcc is found), ON or OFF")
 set_property(CACHE SHALLOW_SAND_CUDA PROPERTY STRINGS AUTO ON OFF)
 
-# What is compiled for 80 runs on 86 and 89, too.
-set(SHALLOW_SAND_CUDA_ARCHITECTURES 75 80 90 CACHE STRING
-  "GPUs to compile for, by compute capability without its dot; the newest is embedded as PTX, too")
-
 set(SHALLOW_SAND_WITH_CUDA FALSE)
 if(SHALLOW_SAND_CUDA STREQUAL "OFF")
   message(STATUS "CUDA backend: off (SHALLOW_SAND_CUDA=OFF)")
@@ -31,16 +27,46 @@ if(NOT CMAKE_CUDA_COMPILER)
   return()
 endif()
 
+execute_process(COMMAND ${SHALLOW_SAND_NVCC} --list-gpu-code OUTPUT_VARIABLE known_codes ERROR_QUIET)
+
+# For this machine's GPUs. Where this nvcc knows none of them, for the oldest that all from 11 to 13 know: newer GPUs translate its
+# PTX when they first start.
+find_program(SHALLOW_SAND_NVIDIA_SMI nvidia-smi)
+mark_as_advanced(SHALLOW_SAND_NVIDIA_SMI)
+set(own_architectures "")
+if(SHALLOW_SAND_NVIDIA_SMI)
+  execute_process(COMMAND ${SHALLOW_SAND_NVIDIA_SMI} --query-gpu=compute_cap --format=csv,noheader
+    OUTPUT_VARIABLE capabilities ERROR_QUIET)
+  string(REGEX MATCHALL "[0-9]+\\.[0-9]" capabilities "${capabilities}")
+  foreach(capability ${capabilities})
+    string(REPLACE "." "" architecture ${capability})
+    if(known_codes MATCHES "sm_${architecture}" AND NOT architecture IN_LIST own_architectures)
+      list(APPEND own_architectures ${architecture})
+    endif()
+  endforeach()
+endif()
+if(NOT own_architectures)
+  set(own_architectures 75)
+endif()
+set(SHALLOW_SAND_CUDA_ARCHITECTURES ${own_architectures} CACHE STRING
+  "GPUs to compile for, by compute capability without its dot; the newest is embedded as PTX, too")
+
 # Architectures are given as -gencode flags: CMake 3.16 knows no other way. Those that this nvcc lacks are left out; the
 # newest is embedded as PTX, too, for GPUs that are newer still.
-execute_process(COMMAND ${SHALLOW_SAND_NVCC} --list-gpu-code OUTPUT_VARIABLE known_codes ERROR_QUIET)
 set(gencode "")
+set(newest 0)
 foreach(architecture ${SHALLOW_SAND_CUDA_ARCHITECTURES})
   if(known_codes MATCHES "sm_${architecture}" OR NOT known_codes)
     string(APPEND gencode " -gencode=arch=compute_${architecture},code=sm_${architecture}")
-    set(newest ${architecture})
+    if(architecture GREATER newest)
+      set(newest ${architecture})
+    endif()
   endif()
 endforeach()
+if(newest EQUAL 0)
+  message(FATAL_ERROR "SHALLOW_SAND_CUDA_ARCHITECTURES is ${SHALLOW_SAND_CUDA_ARCHITECTURES}, of which ${SHALLOW_SAND_NVCC} knows "
+    "none: give others (nvcc --list-gpu-code names them; 75 runs on all newer GPUs, too), or SHALLOW_SAND_CUDA=OFF")
+endif()
 string(APPEND gencode " -gencode=arch=compute_${newest},code=compute_${newest}")
 
 # test/cuda/check_resources.py reads the kernels, which it can only where this nvcc is able to leave them uncompressed.
@@ -62,4 +88,5 @@ string(APPEND CMAKE_CUDA_FLAGS
   " -Xcompiler=-Wall,-Wextra,-Werror,-ffp-contract=off,-fno-math-errno,-fno-trapping-math")
 enable_language(CUDA)
 set(SHALLOW_SAND_WITH_CUDA TRUE)
-message(STATUS "CUDA backend: on (${SHALLOW_SAND_NVCC})")
+string(REPLACE ";" ", " listed "${SHALLOW_SAND_CUDA_ARCHITECTURES}")
+message(STATUS "CUDA backend: on (${SHALLOW_SAND_NVCC}; compiled for ${listed}, newer GPUs translate when they first start)")
