@@ -128,7 +128,7 @@ class Bodies(unittest.TestCase):
                 topic.publish(message)
             world.frames["hand"] = hand
             self.assertEqual(node.body("tool", is_state(BodyStatus.MOVING)).jumps, 0)
-            wait_for_depth(node, 0.6, 0.4, lambda depth: depth < 0.1 * DEPTH)
+            wait_for_depth(node, 0.6, 0.27, lambda depth: depth < 0.1 * DEPTH)
             # What is no pose is refused, and said of the body.
             world.frames["hand"] = lambda stamp: hand(stamp, length=3.0)
             self.assertIn("length 1", node.body("tool", is_state(BodyStatus.STALE)).problem)
@@ -138,7 +138,8 @@ class Bodies(unittest.TestCase):
             self.refuse(call("add_body", name="other", shape=box(0.1, 0.1, 0.1), pose_topic="/hand", handle=True),
                         "pose_topic", "one of them")
             self.assertTrue(call("remove_body", name="tool").success)
-            wait_for_depth(node, 0.6, 0.4, lambda depth: depth > 0.2 * DEPTH)
+            # Sand slides back to where the edge was, not always to the middle.
+            wait_for_depth(node, 0.6, 0.27, lambda depth: depth > 0.2 * DEPTH)
             node.assert_well(self)
 
     def test_what_services_refuse(self):
