@@ -4,16 +4,12 @@
     /usr/bin/python3 make_terrain.py
 
 8 by 6 m in pixels of 0.04 m. Band `rock` is the rock's elevation, band `sand` that of the sand's surface, both in whole millimetres, with a
-scale that makes them metres. Needs gdal_translate and gdalbuildvrt (package gdal-bin).
+scale that makes them metres.
 """
 
-import pathlib
-import subprocess
-import tempfile
-
 import numpy as np
+import terrain_file
 
-HERE = pathlib.Path(__file__).resolve().parent
 SIZE = np.array([8.0, 6.0])  # m
 PIXEL = 0.04  # m
 RANDOM = np.random.RandomState(7)
@@ -72,28 +68,10 @@ def sand(x, y):
     return 0.02 + 0.05 * y / SIZE[1] + 0.06 * rough(x, y, 3.0, 2) + 0.02 * np.sin(2.0 * np.pi * (0.9 * x + 0.5 * y + 0.4 * noise(x, y, 1.5)))
 
 
-def write_ascii(path, elevation):
-    millimetres = np.rint(1000.0 * elevation[::-1]).astype(int)
-    header = f"ncols {elevation.shape[1]}\nnrows {elevation.shape[0]}\nxllcorner 0\nyllcorner 0\ncellsize {PIXEL}\n"
-    path.write_text(header + "\n".join(" ".join(map(str, line)) for line in millimetres) + "\n", encoding="ascii")
-
-
 def main():
     columns, rows = np.rint(SIZE / PIXEL).astype(int)
     x, y = np.meshgrid(PIXEL * (np.arange(columns) + 0.5), PIXEL * (np.arange(rows) + 0.5))
-    with tempfile.TemporaryDirectory() as folder:
-        bands = []
-        for name, elevation in (("rock", rock(x, y)), ("sand", sand(x, y))):
-            bands.append(pathlib.Path(folder, name + ".asc"))
-            write_ascii(bands[-1], elevation)
-        stack = pathlib.Path(folder, "terrain.vrt")
-        subprocess.run(["gdalbuildvrt", "-q", "-separate", stack, *bands], check=True)
-        described = stack.read_text(encoding="utf-8")
-        for number, band in enumerate(bands, start=1):
-            described = described.replace(f'band="{number}">', f'band="{number}"><Description>{band.stem}</Description>')
-        stack.write_text(described, encoding="utf-8")
-        subprocess.run(["gdal_translate", "-q", "-ot", "Int16", "-a_scale", "0.001", "-a_offset", "0", "-co", "COMPRESS=DEFLATE",
-                        "-co", "PREDICTOR=2", "-co", "ZLEVEL=9", "-co", "INTERLEAVE=BAND", stack, HERE / "terrain.tif"], check=True)
+    terrain_file.write("terrain.tif", PIXEL, 0.001, {"rock": rock(x, y), "sand": sand(x, y)})
 
 
 if __name__ == "__main__":

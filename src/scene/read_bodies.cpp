@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
 
 #include "bounds.h"
 #include "scene_reader.h"
@@ -75,7 +77,27 @@ PoseKey readPoseKey(const SceneValue& value) {
   return key;
 }
 
+std::vector<PoseKey> readMotion(const SceneValue& value);
+
+/// From a file that holds such a list. One that a program wrote may be long, but no device that never ends.
+std::vector<PoseKey> readMotionFile(const SceneValue& file) {
+  constexpr std::uintmax_t kLargest = std::uintmax_t{16} << 20;
+  const std::string path = file.path();
+  std::error_code missing;
+  const bool is_file = std::filesystem::is_regular_file(path, missing);
+  if (!is_file || std::filesystem::file_size(path, missing) > kLargest)
+    file.fail(path, "a file with a list of poses, of at most 16 MiB");
+  const YAML::Node list = loadYaml(path, "a list of poses");
+  if (!list.IsSequence()) throw SceneError(path + ": expected a list of poses");
+  return readMotion(SceneValue(list, {path, ""}));
+}
+
+/// A list of poses, or the file that holds it.
 std::vector<PoseKey> readMotion(const SceneValue& value) {
+  if (value.isMap()) {
+    value.requireMap({"file"});
+    return readMotionFile(value.at("file"));
+  }
   std::vector<PoseKey> motion;
   for (const SceneValue& item : value.items()) {
     const PoseKey key = readPoseKey(item);

@@ -1,9 +1,6 @@
 #include "shallow_sand/scene/scene.h"
 
-#include <yaml-cpp/yaml.h>
-
 #include <filesystem>
-#include <fstream>
 
 #include "bounds.h"
 #include "scene_reader.h"
@@ -19,19 +16,10 @@ const std::vector<std::string>& sceneKeys() {
 }
 
 Scene loadScene(const std::string& path) {
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path)) {
-    throw SceneError(path + ": cannot be read; expected a scene file");
-  }
-  try {
-    const std::string folder = std::filesystem::path(path).parent_path().string();
-    Scene scene = readScene(YAML::Load(file), path, folder.empty() ? "." : folder);
-    scene.name = std::filesystem::path(path).stem().string();
-    return scene;
-  } catch (const YAML::Exception& error) {
-    const std::string line = error.mark.is_null() ? "" : ":" + std::to_string(error.mark.line + 1);
-    throw SceneError(oneLine(path + line + ": not valid YAML (" + error.msg + "); expected a scene"));
-  }
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  Scene scene = readScene(loadYaml(path, "a scene"), path, folder.empty() ? "." : folder);
+  scene.name = std::filesystem::path(path).stem().string();
+  return scene;
 }
 
 Scene readScene(const YAML::Node& root_node, const std::string& source_name, const std::string& folder) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <numeric>
 #include <set>
 
@@ -76,6 +77,19 @@ std::string oneLine(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
   return text;
+}
+
+YAML::Node loadYaml(const std::string& path, const std::string& expected) {
+  std::ifstream file(path);
+  if (!file || std::filesystem::is_directory(path)) {
+    throw SceneError(path + ": cannot be read; expected " + expected);
+  }
+  try {
+    return YAML::Load(file);
+  } catch (const YAML::Exception& error) {
+    const std::string line = error.mark.is_null() ? "" : ":" + std::to_string(error.mark.line + 1);
+    throw SceneError(oneLine(path + line + ": not valid YAML (" + error.msg + "); expected " + expected));
+  }
 }
 
 SceneValue::SceneValue(const YAML::Node& node, const SceneSource& source)

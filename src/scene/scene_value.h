@@ -27,6 +27,9 @@ struct SceneSource {
   std::string folder;  ///< that paths in the scene start from; empty: they must be absolute
 };
 
+/// What a YAML file holds. @param expected what it should be, in words. @throws SceneError
+YAML::Node loadYaml(const std::string& path, const std::string& expected);
+
 /// One value of a scene with its place in it. Every way to read it either gives what was asked for or throws
 /// a SceneError that names the place.
 class SceneValue {

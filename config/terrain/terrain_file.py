@@ -1,0 +1,29 @@
+"""Writes elevations as a GeoTIFF of whole numbers. Needs gdal_translate and gdalbuildvrt (package gdal-bin)."""
+
+import pathlib
+import subprocess
+import tempfile
+
+import numpy as np
+
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+def write(name, pixel, unit, bands):
+    """@param pixel of square shape [m]; unit: what is stored are whole multiples of it [m]; bands: name → elevations [m], south first"""
+    with tempfile.TemporaryDirectory() as folder:
+        files = []
+        for band, elevation in bands.items():
+            rows, columns = elevation.shape
+            files.append(pathlib.Path(folder, band + ".asc"))
+            header = f"ncols {columns}\nnrows {rows}\nxllcorner 0\nyllcorner 0\ncellsize {pixel}\n"
+            lines = (" ".join(map(str, line)) for line in np.rint(elevation[::-1] / unit).astype(int))
+            files[-1].write_text(header + "\n".join(lines) + "\n", encoding="ascii")
+        stack = pathlib.Path(folder, "stack.vrt")
+        subprocess.run(["gdalbuildvrt", "-q", "-separate", stack, *files], check=True)
+        described = stack.read_text(encoding="utf-8")
+        for number, band in enumerate(bands, start=1):
+            described = described.replace(f'band="{number}">', f'band="{number}"><Description>{band}</Description>')
+        stack.write_text(described, encoding="utf-8")
+        subprocess.run(["gdal_translate", "-q", "-ot", "Int16", "-a_scale", str(unit), "-a_offset", "0", "-co", "COMPRESS=DEFLATE",
+                        "-co", "PREDICTOR=2", "-co", "ZLEVEL=9", "-co", "INTERLEAVE=BAND", stack, HERE / name], check=True)
