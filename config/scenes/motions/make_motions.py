@@ -43,7 +43,7 @@ class Pen:
 def butterfly():
     """Wings along the first turn of Fay's butterfly curve, body and feelers."""
     scale, x0, y0 = 0.32, 1.28, 1.1
-    pen = Pen(speed=0.5, drawing=0.32, lifted=0.42)
+    pen = Pen(speed=0.5, drawing=0.33, lifted=0.42)
     steps = 240
     wings = []
     for k in range(steps + 1):
@@ -76,7 +76,7 @@ HOVER = [
 
 def writing():
     """Two characters that mean flying."""
-    pen = Pen(speed=0.8, drawing=0.27, lifted=0.40)
+    pen = Pen(speed=0.8, drawing=0.28, lifted=0.40)
     for character, x0 in ((FLY, 0.2), (HOVER, 2.75)):
         for stroke in character:
             pen.draw([(x0 + 2.15 * x, 0.22 + 2.15 * y) for x, y in stroke])
