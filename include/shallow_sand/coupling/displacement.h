@@ -103,10 +103,10 @@ struct DisplaceSand {
   const float* bed;
   SandColumns columns;  ///< is written
   SandLayer pushed;     ///< is written: what was pushed to columns that no body covers
-  int across;           ///< cells in a row
-  float spacing;
   GivenInWindow given;  ///< is written; the outermost cells of its window are clear of bodies, or at the edge
                         ///< of the grid
+  int across;           ///< cells in a row
+  float spacing;
   /// Sand goes on from where it came to without room: bodies have pushed what is beside them before. Then
   /// columns change only where there is such sand, or beside it.
   bool again;

@@ -364,7 +364,7 @@ class EngineOn : public SteppedEngine {
     const GivenInWindow given = givenIn(window);
     executor_.forEachCell(
         window, DisplaceSand{memory_.contact(), distance, ground, load, memory_.bed.data(), memory_.columns(),
-                             pushed, grid_.columns, grid_.spacing, given, again});
+                             pushed, given, grid_.columns, grid_.spacing, again});
     addGiven(given);
     for (const Window& part : executor_.partsWith(window, PushedDepth{pushed.depth, grid_.columns}))
       reached.push_back(part.grown(kPassesOfPushedSand, grid_));
