@@ -183,7 +183,6 @@ class EngineOn : public SteppedEngine {
 
   void restore(const Fields& fields, const ContactSnapshot& contacts) override {
     memory_.restore(fields, contacts);
-    given_sums_ = memory_.givenSums();
     touch(Window::all(grid_));
     bed_is_new_ = true;
     windows_ = contacts.windows;

@@ -218,7 +218,7 @@ class SandMemory {
     if (!snapshot.windows.empty()) swapWhereTouching(cover, layers);
     for (State* layer : {&state, &next}) set(*layer, layers.depth, layers.momentum_x, layers.momentum_y);
     if (contacts.empty()) return;
-    for (Memory<double>& given : given_) given = Memory<double>(given.size());
+    for (Memory<double>& given : given_) set(given, std::vector<double>(given.size()));
     // Given back first: there may not be room for both.
     contacts.clear();
     contacts.emplace_back(bed);
