@@ -28,6 +28,15 @@ inline void expectSameRun(const Simulator& one, const Simulator& other) {
   EXPECT_EQ(one.ledger().poured, other.ledger().poured);
 }
 
+/// Bodies have given the same momentum, and have done so from one beginning.
+inline void expectSameGivenMomentum(const Simulator& one, const Simulator& other) {
+  const std::vector<SandContact> contacts = one.contacts(one.fields());
+  const std::vector<SandContact> others = other.contacts(other.fields());
+  ASSERT_EQ(contacts.size(), others.size());
+  for (std::size_t k = 0; k < contacts.size(); ++k)
+    EXPECT_EQ(contacts[k].given_momentum, others[k].given_momentum) << "body " << k;
+}
+
 /// The same, where sums of volumes before and after a snapshot are rounded on their own.
 inline void expectSameButForRoundings(const Simulator& whole, const Simulator& parts) {
   expectSameSandAndSteps(whole, parts);

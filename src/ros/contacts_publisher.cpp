@@ -17,6 +17,8 @@ BodyContact toMessage(const SandContact& contact) {
   message.carried_volume = contact.carried_volume;
   message.contact_momentum_x = contact.contact_momentum.x();
   message.contact_momentum_y = contact.contact_momentum.y();
+  message.given_momentum_x = contact.given_momentum.x();
+  message.given_momentum_y = contact.given_momentum.y();
   return message;
 }
 

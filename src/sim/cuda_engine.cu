@@ -145,6 +145,18 @@ void CudaEngine::sendBodies(const std::vector<PlacedBody>& before, std::vector<P
   wide_blocks_.send(tables_.wide_blocks, stream_);
   bin_first_.send(tables_.bin_first, stream_);
   bin_members_.send(tables_.bin_members, stream_);
+  given_sums_.send(memory_.givenSums(), stream_);
+  makeRoomForGiven();
+}
+
+void CudaEngine::makeRoomForGiven() {
+  if (tables_.windows.empty()) return;
+  const std::size_t cells = tables_.windows.back().first_cell + tables_.windows.back().cells.cells();
+  if (cells <= given_.size()) return;
+  const std::size_t room = std::min(2 * cells, grid_.cells());
+  CudaMemory<std::uint8_t> some_given(room);
+  given_ = CudaMemory<GivenMomentum>(room);
+  some_given_ = std::move(some_given);
 }
 
 BodiesOnGpu CudaEngine::bodiesOnGpu() {
@@ -169,6 +181,9 @@ BodiesOnGpu CudaEngine::bodiesOnGpu() {
           memory_.columns(),
           contacts.next_hidden.layer(),
           contacts.pushed.layer(),
+          given_.data(),
+          some_given_.data(),
+          given_sums_.data(),
           contacts.distance.data(),
           contacts.flowed.data(),
           rests_.data()};

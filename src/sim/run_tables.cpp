@@ -42,6 +42,7 @@ void addPlacement(const Placement& placement, std::size_t bodies, const std::vec
   for (const PlacedBody& body : placement.bodies) {
     const Window around = body.window.grown(1, grid);
     tables.views[begin + body.body] = body.view;
+    tables.views[begin + body.body].number = static_cast<int>(body.body);
     const bool has_come = begin == 0 || tables.reaches[begin - bodies + body.body].around.empty();
     tables.reaches[begin + body.body] = {around, reachOf(body, grid), around.overlapsAny(poured_on),
                                          has_come ? 0 : body.still};
@@ -70,8 +71,11 @@ RunTables makeRunTables(const std::vector<Placement>& placements, std::size_t bo
   for (const PlacedBody& body : swept) touched.push_back(body.window);
   const std::vector<Window> windows = withoutOverlap(touched);
   const BinLists lists = binLists(swept, windows);
-  for (std::size_t k = 0; k < windows.size(); ++k)
-    tables.windows.push_back({windows[k], static_cast<int>(lists.first_begins[k]), lists.across[k]});
+  std::size_t cells = 0;
+  for (std::size_t k = 0; k < windows.size(); ++k) {
+    tables.windows.push_back({windows[k], static_cast<int>(lists.first_begins[k]), lists.across[k], cells});
+    cells += windows[k].cells();
+  }
   tables.bin_first = lists.first;
   tables.bin_members = lists.members;
   tables.blocks = blocksOf(windows);

@@ -638,7 +638,11 @@ class Simulator::Implementation {
       bodies.back().view.field.distance = bodies_[k].field->distance.data();
     }
     std::vector<SandContact> contacts = sandContacts(grid_, now, bodies, instructions());
-    for (std::size_t k = 0; k < bodies.size(); ++k) contacts[k].name = bodies_[bodies[k].body].name;
+    const std::vector<Eigen::Vector2d> given = engine_->givenMomentum();
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      contacts[k].name = bodies_[bodies[k].body].name;
+      contacts[k].given_momentum = given[bodies[k].body];
+    }
     std::stable_sort(contacts.begin(), contacts.end(),
                      [](const SandContact& a, const SandContact& b) { return a.name < b.name; });
     return contacts;

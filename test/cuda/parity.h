@@ -52,6 +52,7 @@ inline RandomScene tiltedScene(std::mt19937& random, const Size& size, int pours
 /// Everything that the façade tells, but for how many cells were computed: tiles are not the same.
 inline void expectSame(const Simulator& one, const Simulator& other) {
   expectSameRun(one, other);
+  expectSameGivenMomentum(one, other);
   EXPECT_EQ(one.ledger().start, other.ledger().start);
   EXPECT_EQ(one.bodyOverlap(), other.bodyOverlap());
   EXPECT_EQ(one.maxSpeed(), other.maxSpeed());

@@ -65,6 +65,28 @@ class ContactsOfBodies(unittest.TestCase):
             node.assert_well(self)
             self.assertEqual(node.error_lines(), [])
 
+    def test_given_momentum(self):
+        rospy.set_param("/robot_description", robot("lonely", link("blade")))
+        # Faster than waves, and then up and away.
+        low, high = DEPTH - PRESSED + 0.2, 1.0
+        path = [(0.0, [0.25, 0.5, low]), (0.25, [0.75, 0.5, low]), (0.3, [0.75, 0.5, high])]
+        plough = {"name": "plough", "shape": {"box": [SIDE, SIDE, 0.4]},
+                  "motion": [{"time": time, "position": position} for time, position in path]}
+        scene = dict(SCENE, bodies=[box("tray", [0.1, 0.1, 0.1], [0.1, 0.1, 1.0]), plough], publish_rate=10.0)
+        with World({"blade": lambda _: Place(0.5, 0.5, 2.0)}), RunningNode("ploughed", scene) as node:
+            _, bodies = wait_for_contacts(node, lambda _, bodies: "blade" in bodies and bodies["plough"].given_momentum_x > 0.0)
+            for name in ("blade", "tray"):
+                self.assertEqual((bodies[name].given_momentum_x, bodies[name].given_momentum_y), (0.0, 0.0), name)
+            _, bodies = wait_for_contacts(node, lambda _, bodies: bodies["plough"].submerged_volume == 0.0)
+            given = bodies["plough"]
+            # Once more than the sand that it stood in at the start has got its speed.
+            self.assertGreater(given.given_momentum_x, SIDE**2 * PRESSED * 2.0)
+            self.assertLess(abs(given.given_momentum_y), 0.1 * given.given_momentum_x)
+            # It touches no sand any more.
+            _, later = wait_for_contacts(node, lambda message, _: True)
+            self.assertEqual(later["plough"].given_momentum_x, given.given_momentum_x)
+            node.assert_well(self)
+
     def assert_no_contact(self, body):
         figures = (body.submerged_volume, body.touching_area, body.carried_volume, body.contact_momentum_x,
                    body.contact_momentum_y)

@@ -91,6 +91,7 @@ TEST(SameBits, HoweverTheStepIsComputed) {
         SCOPED_TRACE(variants[k].name);
         others[k].advance(scene.frame);
         expectSameRun(reference, others[k]);
+        expectSameGivenMomentum(reference, others[k]);
       }
     }
     steps += reference.progress().steps;

@@ -7,6 +7,7 @@ namespace shallow_sand {
 /// A rigid body at one instant, as kernels see it. Positions are relative to the corner of cell (0, 0), so
 /// that floats stay exact on maps far from their frame's origin. [m, m/s, rad/s]
 struct BodyView {
+  int number;  ///< of the body, among all that there ever were
   DistanceFieldView field;
   Vector3 axis_x;  ///< the grid's axes in the body's frame
   Vector3 axis_y;

@@ -42,6 +42,7 @@ struct ContactFields {
                       ///< [m/s]
   float* velocity_y;
   float* velocity_z;
+  int* body;            ///< the number of that body; negative where there is none, or it is not known
   std::uint8_t* swept;  ///< whether something that it does not climb has come into the sand on the solid
 
   SHALLOW_SAND_HOST_DEVICE bool isCovered(long long at) const { return clearance[at] < 1e30f; }

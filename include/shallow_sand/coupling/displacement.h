@@ -1,6 +1,6 @@
 #pragma once
 
-#include "shallow_sand/coupling/contact.h"
+#include "shallow_sand/coupling/given_momentum.h"
 #include "shallow_sand/device/window.h"
 
 namespace shallow_sand {
@@ -83,12 +83,12 @@ struct Outflow {
   /// there is none. Returns how many there are.
   SHALLOW_SAND_HOST_DEVICE int divide(float depth, float velocity_x, float velocity_y) {
     keepAhead(velocity_x, velocity_y);
-    const int takers = to_west + to_east + to_south + to_north;
-    if (takers == 0) return 0;
+    if (takers() == 0) return 0;
     excess = depth;
-    share = depth / static_cast<float>(takers);
-    return takers;
+    share = depth / static_cast<float>(takers());
+    return takers();
   }
+  SHALLOW_SAND_HOST_DEVICE int takers() const { return to_west + to_east + to_south + to_north; }
 };
 
 /// Sand that has no room goes to neighbours: the ground's to those that are nearer to the body's edge, a load
@@ -103,9 +103,10 @@ struct DisplaceSand {
   const float* bed;
   SandColumns columns;  ///< is written
   SandLayer pushed;     ///< is written: what was pushed to columns that no body covers
+  GivenInWindow given;  ///< is written; the outermost cells of its window are clear of bodies, or at the edge
+                        ///< of the grid
   int across;           ///< cells in a row
   float spacing;
-  Window window;  ///< its outermost cells are clear of bodies or at the edge of the grid
   /// Sand goes on from where it came to without room: bodies have pushed what is beside them before. Then
   /// columns change only where there is such sand, or beside it.
   bool again;
@@ -114,23 +115,23 @@ struct DisplaceSand {
     return static_cast<long long>(j) * across + i;
   }
   SHALLOW_SAND_HOST_DEVICE bool nearer(int i, int j, int than) const {
-    return window.holds(i, j) && distance[index(i, j)] < than;
+    return given.window.holds(i, j) && distance[index(i, j)] < than;
   }
   SHALLOW_SAND_HOST_DEVICE bool lower(int i, int j, float than) const {
-    if (!window.holds(i, j)) return false;
+    if (!given.window.holds(i, j)) return false;
     const long long at = index(i, j);
     return (contact.isCovered(at) ? contact.top[at] : bed[at] + ground.depth[at]) < than;
   }
 
   /// Whether a column has more sand than room.
   SHALLOW_SAND_HOST_DEVICE bool overflows(int i, int j) const {
-    if (!window.holds(i, j)) return false;
+    if (!given.window.holds(i, j)) return false;
     const long long at = index(i, j);
     return ground.depth[at] > contact.clearance[at] || load.depth[at] > contact.headroom[at] ||
            contact.swept[at] != 0;
   }
   SHALLOW_SAND_HOST_DEVICE bool pushes(int i, int j) const {
-    return !again && window.holds(i, j) && contact.length[index(i, j)] > 0.0f;
+    return !again && given.window.holds(i, j) && contact.length[index(i, j)] > 0.0f;
   }
   /// Whether nothing comes to a column or goes from it.
   SHALLOW_SAND_HOST_DEVICE bool isLeftAlone(int i, int j) const {
@@ -143,12 +144,12 @@ struct DisplaceSand {
   /// body that comes down, if it is nearer to the edge.
   SHALLOW_SAND_HOST_DEVICE bool takesLoad(int i, int j, long long of) const {
     if (contact.swept[of] != 0) return lower(i, j, contact.top[of]);
-    return nearer(i, j, distance[of]) || (window.holds(i, j) && !contact.isCovered(index(i, j)));
+    return nearer(i, j, distance[of]) || (given.window.holds(i, j) && !contact.isCovered(index(i, j)));
   }
 
   SHALLOW_SAND_HOST_DEVICE Outflow ofGround(int i, int j) const {
     Outflow out{};
-    if (!window.holds(i, j)) return out;
+    if (!given.window.holds(i, j)) return out;
     const long long at = index(i, j);
     const float h = ground.depth[at];
     const float excess = h - contact.clearance[at];
@@ -170,7 +171,7 @@ struct DisplaceSand {
 
   SHALLOW_SAND_HOST_DEVICE Outflow ofLoad(int i, int j) const {
     Outflow out{};
-    if (!window.holds(i, j)) return out;
+    if (!given.window.holds(i, j)) return out;
     const long long at = index(i, j);
     const float excess = load.depth[at] - (contact.swept[at] != 0 ? 0.0f : contact.headroom[at]);
     if (!contact.isCovered(at) || !(excess > 0.0f)) return out;
@@ -196,16 +197,13 @@ struct DisplaceSand {
   }
 
   /// Part of a column's sand that stays. One that gives its excess away is exactly full; a difference could
-  /// be off by a rounding.
-  SHALLOW_SAND_HOST_DEVICE static Sand kept(const Sand& sand, const Outflow& out, float room) {
+  /// be off by a rounding. What the body gives to that sand and to what goes is added to `got`.
+  SHALLOW_SAND_HOST_DEVICE static Sand kept(const Sand& sand, const Outflow& out, float room, Momentum& got) {
     if (!(out.excess > 0.0f)) return sand;
+    const float takers = static_cast<float>(out.takers());
+    got.x += takers * out.with.x - sand.hu;
+    got.y += takers * out.with.y - sand.hv;
     return {room, 0.0f, 0.0f};
-  }
-
-  SHALLOW_SAND_HOST_DEVICE float verticalVelocity(int i, int j) const {
-    if (!window.holds(i, j)) return 0.0f;
-    const long long at = index(i, j);
-    return meanVerticalVelocity(contact.length[at], contact.velocity_z[at], ground.depth[at]);
   }
 
   SHALLOW_SAND_HOST_DEVICE void operator()(int i, int j) const {
@@ -213,33 +211,33 @@ struct DisplaceSand {
     Sand below = ground.get(at);
     Sand above = load.get(at);
     Sand came;
+    GivenMomentum got{};
     const bool covered = contact.isCovered(at);
     const bool left_alone = isLeftAlone(i, j);
-    if (!left_alone) came = exchange(i, j, below, above);
+    if (!left_alone) came = exchange(i, j, below, above, got.own);
     const bool closed = covered && isFull(below.h, contact.clearance[at], spacing);
-    if (!left_alone && below.h > 0.0f && !closed) {
-      // As Eq. 23 has it, hu takes the difference along x only, hv the one along y only.
-      below.hu =
-          pushedAside(below.hu, below.h, verticalVelocity(i + 1, j) - verticalVelocity(i - 1, j), spacing);
-      below.hv =
-          pushedAside(below.hv, below.h, verticalVelocity(i, j + 1) - verticalVelocity(i, j - 1), spacing);
+    if (!left_alone && below.h > 0.0f && !closed)
+      VerticalPush{contact, ground.depth, across, spacing, given.window}(i, j, below, got);
+    if (closed) {
+      got.own = {got.own.x - below.hu, got.own.y - below.hv};
+      below = {below.h, 0.0f, 0.0f};
     }
-    if (closed) below = {below.h, 0.0f, 0.0f};
     columns.cover[at] = closed ? Cover::touching : (covered ? Cover::hanging : Cover::none);
     columns.visible.set(at, closed ? above : below);
     columns.hidden.set(at, closed ? below : above);
     columns.visible_bed[at] = closed ? contact.top[at] : bed[at];
     columns.ceiling[at] = closed ? contact.headroom[at] : contact.clearance[at];
     pushed.set(at, came);
+    given.set(i, j, got);
   }
 
  private:
   /// Gives away what there is no room for, and takes what neighbours give. Returns what comes to a column
   /// that no body covers; under or on a body it stays where it comes to.
-  SHALLOW_SAND_HOST_DEVICE Sand exchange(int i, int j, Sand& below, Sand& above) const {
+  SHALLOW_SAND_HOST_DEVICE Sand exchange(int i, int j, Sand& below, Sand& above, Momentum& got) const {
     const long long at = index(i, j);
-    below = kept(below, ofGround(i, j), contact.clearance[at]);
-    above = kept(above, ofLoad(i, j), contact.swept[at] != 0 ? 0.0f : contact.headroom[at]);
+    below = kept(below, ofGround(i, j), contact.clearance[at], got);
+    above = kept(above, ofLoad(i, j), contact.swept[at] != 0 ? 0.0f : contact.headroom[at], got);
     const Sand to_ground =
         gathered(ofGround(i - 1, j), ofGround(i + 1, j), ofGround(i, j - 1), ofGround(i, j + 1));
     const Sand to_load = gathered(ofLoad(i - 1, j), ofLoad(i + 1, j), ofLoad(i, j - 1), ofLoad(i, j + 1));

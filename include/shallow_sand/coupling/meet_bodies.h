@@ -68,7 +68,18 @@ struct MeetBodies : BodiesOverBed {
     contact.clearance[at] = maximum(solid.bottom - bed[at], 0.0f);
     contact.top[at] = solid.top;
     contact.headroom[at] = solid.next - solid.top;
-    const Vector3 velocity = velocityOf(solid, i, j, bed[at] + columns.ground(at).h);
+    contact.body[at] = -1;
+    contact.velocity_x[at] = 0.0f;
+    contact.velocity_y[at] = 0.0f;
+    contact.velocity_z[at] = 0.0f;
+    if (solid.lowest_body < 0) return;
+    const float surface = bed[at] + columns.ground(at).h;
+    const bool submerged = surface > solid.bottom;
+    const BodyView& body = bins.bodies[submerged ? solid.lowest_body : solid.highest_body];
+    // The velocity is linear along the ray: its mean over the interval is its value in the middle.
+    const float z = submerged ? 0.5f * (solid.bottom + minimum(solid.top, surface)) : solid.top;
+    const Vector3 velocity = body.velocityAt({centre(i), centre(j), z});
+    contact.body[at] = body.number;
     contact.velocity_x[at] = velocity.x;
     contact.velocity_y[at] = velocity.y;
     contact.velocity_z[at] = velocity.z;
@@ -80,16 +91,6 @@ struct MeetBodies : BodiesOverBed {
     const float part = lifted / below.h;
     above = {above.h + lifted, above.hu + part * below.hu, above.hv + part * below.hv};
     below = {kept, below.hu - part * below.hu, below.hv - part * below.hv};
-  }
-
-  SHALLOW_SAND_HOST_DEVICE Vector3 velocityOf(const LowestSolid& solid, int i, int j, float surface) const {
-    if (solid.lowest_body < 0) return {};
-    const float x = centre(i);
-    const float y = centre(j);
-    if (!(surface > solid.bottom)) return bins.bodies[solid.highest_body].velocityAt({x, y, solid.top});
-    // The velocity is linear along the ray: its mean over the interval is its value in the middle.
-    return bins.bodies[solid.lowest_body].velocityAt(
-        {x, y, 0.5f * (solid.bottom + minimum(solid.top, surface))});
   }
 };
 

@@ -30,6 +30,15 @@ struct SandContact {
   /// of the columns beside it that are higher than its lowest point there. This is the momentum that this
   /// sand has now, whoever gave it, not what the body has given. [m⁴/s]
   Eigen::Vector2d contact_momentum{0.0, 0.0};
+  /// Volume times velocity, in the grid's frame, that the body has given to sand since the start, or since a
+  /// snapshot was restored: it counts on from when bodies are placed the next time. Negative where it took
+  /// some. It is what sand gets by making way: what is displaced moves with the body (Eq. 20), sand that a
+  /// body closes in stops, and a body that moves up or down pushes what is beside it (Eq. 24). Where several
+  /// bodies fill a column, all of it counts as given by the one whose velocity the sand takes. Pressure at
+  /// the body's sides, and friction of what lies on it, are not in it: it is not the force on the body, and a
+  /// slow body that sand runs after may take more than it gives. Times the bulk density it is an impulse
+  /// [N·s]. [m⁴/s]
+  Eigen::Vector2d given_momentum{0.0, 0.0};
 };
 
 }  // namespace shallow_sand

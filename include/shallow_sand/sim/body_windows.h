@@ -7,7 +7,7 @@
 
 namespace shallow_sand {
 
-/// A body at one instant; `view.field.distance` is filled in by the engine.
+/// A body at one instant; `view.field.distance` and `view.number` are filled in by the engine.
 struct PlacedBody {
   std::size_t body;
   BodyView view;

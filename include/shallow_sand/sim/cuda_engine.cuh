@@ -41,6 +41,7 @@ class CudaEngine : public Engine {
   void moveGrains(float duration, std::uint32_t number) override;
   std::vector<Grain> grains() override { return grains_->get(); }
   void setGrains(const std::vector<Grain>& grains) override { grains_->set(grains); }
+  std::vector<Eigen::Vector2d> givenMomentum() const override { return memory_.givenMomentum(); }
   ContactSnapshot contacts() const override { return memory_.snapshot(held_); }
   void restore(const Fields& fields, const ContactSnapshot& contacts) override;
 
@@ -62,6 +63,7 @@ class CudaEngine : public Engine {
 
   double apply(ChangeSand& change);
   void sendBodies(const std::vector<PlacedBody>& before, std::vector<Placement> placements);
+  void makeRoomForGiven();
   void arePlaced(const std::vector<PlacedBody>& bodies);
   BodiesOnGpu bodiesOnGpu();
   GpuRun runOnGpu();
@@ -94,6 +96,9 @@ class CudaEngine : public Engine {
   SentList<int> bin_first_;
   SentList<int> bin_members_;
   SentList<PourOnGpu> pours_;
+  SentList<double*> given_sums_;
+  CudaMemory<GivenMomentum> given_{0};
+  CudaMemory<std::uint8_t> some_given_{0};
   CudaMemory<unsigned char> apart_{0};
   CudaMemory<float> overlap_{0};
   StepRun run_{};                        // as it was started

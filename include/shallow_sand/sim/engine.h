@@ -78,6 +78,9 @@ class Engine {
   virtual double left() const = 0;    ///< over open edges, by pours and edits [m³]
   /// Sand inside of these bodies. [m³]
   virtual double overlap(const std::vector<PlacedBody>& bodies) = 0;
+  /// What each body that there ever was has given to sand that made way for it, since the start or since the
+  /// sand was restored; 0 for those that were removed. [m⁴/s]
+  virtual std::vector<Eigen::Vector2d> givenMomentum() const = 0;
 
   /// Grains go on with the velocities that the sand has now, as in this time [s]. Moves are numbered from 1.
   virtual void moveGrains(float duration, std::uint32_t number) = 0;

@@ -39,8 +39,14 @@ class EngineOn : public SteppedEngine {
         changed_(start.grid, kCopiedColumns, kCopiedRows),
         collected_(start.grid, kCopiedColumns, kCopiedRows) {}
 
-  void addBody(const DistanceField& field) override { memory_.addBody(field); }
-  void removeBody(std::size_t body) override { memory_.removeBody(body); }
+  void addBody(const DistanceField& field) override {
+    memory_.addBody(field);
+    given_sums_ = memory_.givenSums();
+  }
+  void removeBody(std::size_t body) override {
+    memory_.removeBody(body);
+    given_sums_ = memory_.givenSums();
+  }
   void addPour(const LocalRegion& region, const PourTimes& times) override { memory_.addPour(region, times); }
 
   void placeBodies(const std::vector<PlacedBody>& bodies, int steps) override {
@@ -159,6 +165,8 @@ class EngineOn : public SteppedEngine {
     const std::vector<float> depths = memory_.downloaded(overlap);
     return std::accumulate(depths.begin(), depths.end(), 0.0) * grid_.cellArea();
   }
+
+  std::vector<Eigen::Vector2d> givenMomentum() const override { return memory_.givenMomentum(); }
 
   void moveGrains(float duration, std::uint32_t number) override {
     std::vector<Window> awake = stepper_.due();
@@ -352,9 +360,11 @@ class EngineOn : public SteppedEngine {
                           DistanceAlongColumns{memory_.contact().clearance, ground.depth, distance,
                                                grid_.columns, grid_.spacing, window});
     executor_.forEachCell(Window::line(window.rows()), DistanceAlongRows{distance, grid_.columns, window});
+    const GivenInWindow given = givenIn(window);
     executor_.forEachCell(
         window, DisplaceSand{memory_.contact(), distance, ground, load, memory_.bed.data(), memory_.columns(),
-                             pushed, grid_.columns, grid_.spacing, window, again});
+                             pushed, given, grid_.columns, grid_.spacing, again});
+    addGiven(given);
     for (const Window& part : executor_.partsWith(window, PushedDepth{pushed.depth, grid_.columns}))
       reached.push_back(part.grown(kPassesOfPushedSand, grid_));
   }
@@ -386,8 +396,23 @@ class EngineOn : public SteppedEngine {
     touch(bins.window);
     rays_.forEachColumn(executor_,
                         FindSubmerged{overBed(bins), memory_.state.depth.data(), memory_.contact()});
-    executor_.forEachCell(bins.window, DragSand{memory_.contact(), memory_.state.layer(), grid_.columns,
-                                                grid_.spacing, bins.window});
+    const GivenInWindow given = givenIn(bins.window);
+    executor_.forEachCell(
+        bins.window, DragSand{memory_.contact(), memory_.state.layer(), grid_.columns, grid_.spacing, given});
+    addGiven(given);
+  }
+
+  /// Room for what bodies give to a window's sand, until it is added up.
+  GivenInWindow givenIn(const Window& window) {
+    if (given_.size() < window.cells()) {
+      given_ = Memory<GivenMomentum>(window.cells());
+      some_given_ = Memory<std::uint8_t>(window.cells());
+    }
+    return {given_.data(), some_given_.data(), window};
+  }
+  void addGiven(const GivenInWindow& given) {
+    executor_.forEachCell(Window::line(given.window.rows()),
+                          AddGiven{given, memory_.contact().body, given_sums_.data(), grid_.columns});
   }
 
   void flowLoads() {
@@ -417,6 +442,7 @@ class EngineOn : public SteppedEngine {
     for (const PlacedBody& placed : bodies) {
       views.push_back(placed.view);
       views.back().field.distance = memory_.distance_fields[placed.body].data();
+      views.back().number = static_cast<int>(placed.body);
     }
     views_ = std::move(views);
     lists_ = binLists(bodies, windows);
@@ -459,9 +485,12 @@ class EngineOn : public SteppedEngine {
   StepArguments attempted_{};
   StepRun run_{};
   Fields requested_;
-  bool bed_is_new_ = true;  // since fields were requested the last time
-  TileSet changed_;         // since then
-  TileSet collected_;       // where they have changed that nobody was told of
+  bool bed_is_new_ = true;          // since fields were requested the last time
+  TileSet changed_;                 // since then
+  TileSet collected_;               // where they have changed that nobody was told of
+  Memory<GivenMomentum> given_{0};  // in the window that sand makes way in
+  Memory<std::uint8_t> some_given_{0};
+  std::vector<double*> given_sums_;  // see AddGiven
   std::vector<BodyView> views_;
   BinLists lists_;
   std::map<std::size_t, Window> standing_;  // columns of each body, when they were placed the last time

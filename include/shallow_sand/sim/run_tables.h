@@ -17,6 +17,7 @@ struct CrowdedWindow {
   Window cells;
   int first_bin;
   int bins_across;
+  std::size_t first_cell;  ///< among the cells of all windows
 };
 
 /// What decides whether a body in a placement is near sand, and has moved there.

@@ -9,7 +9,7 @@
 
 namespace shallow_sand {
 
-/// What each of these bodies does to the sand, in their order; without names.
+/// What each of these bodies does to the sand, in their order; without names, and without what they gave.
 /// @param fields sand that has made way for the bodies where they are
 /// @param bodies with distance fields on the host; their `body` is not read
 std::vector<SandContact> sandContacts(const Grid& grid, const Fields& fields,

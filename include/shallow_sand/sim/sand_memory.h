@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "shallow_sand/coupling/contact.h"
+#include "shallow_sand/coupling/given_momentum.h"
 #include "shallow_sand/particles/grain_memory.h"
 #include "shallow_sand/sim/engine.h"
 #include "shallow_sand/solver/change_sand.h"
@@ -48,6 +48,7 @@ class SandMemory {
           velocity_x(bed.size()),
           velocity_y(bed.size()),
           velocity_z(bed.size()),
+          body(bed.size(), -1),
           swept(bed.size()),
           hidden(bed.size()),
           next_hidden(bed.size()),
@@ -64,6 +65,7 @@ class SandMemory {
     Memory<float> velocity_x;
     Memory<float> velocity_y;
     Memory<float> velocity_z;
+    Memory<int> body;
     Memory<std::uint8_t> swept;
     State hidden;
     State next_hidden;
@@ -104,10 +106,33 @@ class SandMemory {
 
   void addBody(const DistanceField& field) {
     Memory<float> distance = uploaded(field.distance);
+    Memory<double> none(rowSums());
     if (contacts.empty()) contacts.emplace_back(bed);
     distance_fields.push_back(std::move(distance));
+    given_.push_back(std::move(none));
   }
-  void removeBody(std::size_t body) { distance_fields[body] = Memory<float>(0); }
+  void removeBody(std::size_t body) {
+    distance_fields[body] = Memory<float>(0);
+    given_[body] = Memory<double>(0);
+  }
+
+  /// See AddGiven.
+  std::vector<double*> givenSums() {
+    std::vector<double*> sums;
+    for (Memory<double>& given : given_) sums.push_back(given.size() > 0 ? given.data() : nullptr);
+    return sums;
+  }
+  /// By each body that there ever was; 0 by those that were removed. [m⁴/s]
+  std::vector<Eigen::Vector2d> givenMomentum() const {
+    std::vector<Eigen::Vector2d> momentum;
+    for (const Memory<double>& given : given_) {
+      momentum.emplace_back(0.0, 0.0);
+      const std::vector<double> rows = downloaded(given);
+      for (std::size_t k = 0; k < rows.size(); k += 2)
+        momentum.back() += grid.cellArea() * Eigen::Vector2d(rows[k], rows[k + 1]);
+    }
+    return momentum;
+  }
 
   void addPour(const LocalRegion& region, const PourTimes& times) {
     PourOnBackend pour{changeOf(region), 0, Memory<double>(0), times};
@@ -193,6 +218,7 @@ class SandMemory {
     if (!snapshot.windows.empty()) swapWhereTouching(cover, layers);
     for (State* layer : {&state, &next}) set(*layer, layers.depth, layers.momentum_x, layers.momentum_y);
     if (contacts.empty()) return;
+    for (Memory<double>& given : given_) set(given, std::vector<double>(given.size()));
     // Given back first: there may not be room for both.
     contacts.clear();
     contacts.emplace_back(bed);
@@ -256,8 +282,8 @@ class SandMemory {
 
   ContactFields contact() {
     Contacts& c = contacts.front();
-    return {c.clearance.data(),  c.top.data(),        c.headroom.data(),   c.length.data(),
-            c.velocity_x.data(), c.velocity_y.data(), c.velocity_z.data(), c.swept.data()};
+    return {c.clearance.data(),  c.top.data(),        c.headroom.data(), c.length.data(), c.velocity_x.data(),
+            c.velocity_y.data(), c.velocity_z.data(), c.body.data(),     c.swept.data()};
   }
   SandColumns columns() {
     Contacts& c = contacts.front();
@@ -361,7 +387,11 @@ class SandMemory {
     set(c.ceiling, ceiling);
   }
 
-  double edited_in_ = 0.0;  // depth, summed over cells [m]
+  /// What a body has given for each row, along x and y.
+  std::size_t rowSums() const { return 2 * static_cast<std::size_t>(grid.rows); }
+
+  std::vector<Memory<double>> given_;  // see AddGiven; none for bodies that were removed
+  double edited_in_ = 0.0;             // depth, summed over cells [m]
   double edited_out_ = 0.0;
 };
 

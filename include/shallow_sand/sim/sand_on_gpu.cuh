@@ -34,6 +34,9 @@ struct BodiesOnGpu {
   SandColumns columns;  ///< at the start of the run
   SandLayer next_hidden;
   SandLayer pushed;
+  GivenMomentum* given;  ///< of all cells of the windows, until it is added up
+  std::uint8_t* some_given;
+  double* const* given_sums;  ///< see AddGiven
   int* distance;
   std::uint8_t* flowed;
   int* rests;  ///< what is known of the sand under and on bodies: whether it rests, whether loads flow
@@ -46,6 +49,10 @@ struct BodiesOnGpu {
     return {BodyBins{views + first_view, bin_first + here.first_bin, bin_members, here.cells,
                      here.bins_across, left_out},
             bed, step.columns, step.sand.spacing};
+  }
+  __device__ GivenInWindow givenIn(int window) const {
+    const CrowdedWindow& here = windows[window];
+    return {given + here.first_cell, some_given + here.first_cell, here.cells};
   }
 };
 
@@ -364,14 +371,14 @@ class SandOnGpu {
     return bodies_.overBed(window, first_view, bodies_.apart, run_.step);
   }
 
-  /// Of a column each thread, along x or y of each window.
+  /// Calls function(k, window) for a column or row k of each window, each by a thread.
   template <class Function>
   __device__ void forEachLine(bool columns, const Function& function) const {
     for (int w = 0; w < bodies_.window_count; ++w) {
       const Window& window = bodies_.windows[w].cells;
       const int lines = columns ? window.columns() : window.rows();
       for (int k = static_cast<int>(team_.thread()); k < lines; k += static_cast<int>(team_.threads()))
-        function(k, window);
+        function(k, w);
     }
     team_.wait();
   }
@@ -405,12 +412,13 @@ class SandOnGpu {
 
   __device__ void measureDistances() const {
     const int across = run_.step.columns;
-    forEachLine(true, [&](int k, const Window& window) {
-      DistanceAlongColumns{bodies_.contact.clearance, next().depth, bodies_.distance, across,
-                           run_.step.sand.spacing,    window}(0, k);
+    forEachLine(true, [&](int k, int window) {
+      DistanceAlongColumns{bodies_.contact.clearance, next().depth,
+                           bodies_.distance,          across,
+                           run_.step.sand.spacing,    bodies_.windows[window].cells}(0, k);
     });
-    forEachLine(false, [&](int k, const Window& window) {
-      DistanceAlongRows{bodies_.distance, across, window}(0, k);
+    forEachLine(false, [&](int k, int window) {
+      DistanceAlongRows{bodies_.distance, across, bodies_.windows[window].cells}(0, k);
     });
   }
 
@@ -422,21 +430,22 @@ class SandOnGpu {
     unsigned found = 0;
     forEachCell([&](int i, int j, int window) {
       const int across = run_.step.columns;
-      DisplaceSand{bodies_.contact,
-                   bodies_.distance,
-                   next(),
-                   bodies_.next_hidden,
-                   bodies_.bed,
-                   columns(),
-                   bodies_.pushed,
-                   across,
-                   run_.step.sand.spacing,
-                   bodies_.windows[window].cells,
-                   again}(i, j);
+      DisplaceSand{
+          bodies_.contact, bodies_.distance,        next(), bodies_.next_hidden,    bodies_.bed, columns(),
+          bodies_.pushed,  bodies_.givenIn(window), across, run_.step.sand.spacing, again}(i, j);
       if (PushedDepth{bodies_.pushed.depth, across}(i, j) > 0.0f) found |= kPushed;
       if (without_room(i, j) > 0.0f) found |= kWithoutRoom;
     });
-    return team_.any(found);
+    const unsigned result = team_.any(found);
+    addGiven();
+    return result;
+  }
+
+  /// What bodies gave to sand that made way for them.
+  __device__ void addGiven() const {
+    forEachLine(false, [&](int k, int window) {
+      AddGiven{bodies_.givenIn(window), bodies_.contact.body, bodies_.given_sums, run_.step.columns}(0, k);
+    });
   }
 
   __device__ void layPushedSand() const {
@@ -470,11 +479,12 @@ class SandOnGpu {
     });
     team_.wait();
     forEachCell([&](int i, int j, int window) {
-      DragSand{bodies_.contact, state(), run_.step.columns, run_.step.sand.spacing,
-               bodies_.windows[window].cells}(i, j);
+      DragSand{bodies_.contact, state(), run_.step.columns, run_.step.sand.spacing, bodies_.givenIn(window)}(
+          i, j);
       tiles_.touch(i, j, here_.number);
     });
     team_.wait();
+    addGiven();
   }
 
   const GpuRun& run_;
