@@ -51,9 +51,11 @@ class RunningNode:
     def __enter__(self):
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, problem, *_):
         if self.process.poll() is None:
             self.process.terminate()
+        elif problem:
+            print("%s ended with %d:" % (self.name, self.process.returncode), *self.error_lines()[-60:], sep="\n")
         self.process.wait(timeout=20)
         self.errors.close()
 
