@@ -114,7 +114,7 @@ inline void followRandomRuns(std::mt19937& random, int runs, const Size& largest
     const int columns = randomCount(random, 5, largest.columns);
     const int rows = randomCount(random, 5, largest.rows);
     RandomSand sand = random() % 2 == 0 ? heldSand(random, columns, rows) : randomSand(random, columns, rows);
-    sand.parameters.displacement = random() % 4 != 0;
+    sand.parameters.coupling = random() % 4 != 0 ? Coupling::displacement : Coupling::drag;
     const int pours = randomCount(random, 0, 2);
     followRandomRun(random, randomScene(random, sand, pours, randomCount(random, 0, 2)), backend);
     if (::testing::Test::HasFatalFailure()) return;

@@ -35,7 +35,7 @@ Edges readEdges(const SceneValue& value) {
 }
 
 SolverParameters readSolver(const SceneValue& solver) {
-  solver.requireMap({"reconstruction", "courant", "max_step", "fixed_step"});
+  solver.requireMap({"reconstruction", "courant", "max_step", "fixed_step", "coupling"});
   SolverParameters parameters;
   if (const auto reconstruction = solver.find("reconstruction")) {
     const std::string name = reconstruction->text();
@@ -51,6 +51,14 @@ SolverParameters readSolver(const SceneValue& solver) {
     parameters.fixed_step = step->number(bounds::finite);
   }
   return parameters;
+}
+
+Coupling readCoupling(const SceneValue& value) {
+  const std::string name = value.text();
+  if (name == "displacement") return Coupling::displacement;
+  if (name == "drag") return Coupling::drag;
+  if (name != "horizontal_drag") value.fail("displacement, drag or horizontal_drag");
+  return Coupling::horizontal_drag;
 }
 
 /// One of two words.
@@ -93,6 +101,7 @@ SimulatorParameters readParameters(const SceneValue& root) {
   }
   if (const auto solver = root.find("solver")) {
     parameters.solver = readSolver(*solver);
+    if (const auto coupling = solver->find("coupling")) parameters.coupling = readCoupling(*coupling);
   }
   if (const auto grains = root.find("grains")) {
     parameters.grains = readGrains(*grains);

@@ -186,7 +186,7 @@ class Simulator::Implementation {
     const std::vector<float> rest(grid_.cells(), 0.0f);
     start.fields = {std::move(bed), std::move(depth), rest, rest};
     start.material = localMaterial(parameters_.material, material, grid_);
-    start.displacement = parameters_.displacement;
+    start.displacement = displaces();
     start.with_slopes = parameters_.solver.reconstruction == Reconstruction::minmod;
     start.grains = parameters_.grains;
 #ifdef SHALLOW_SAND_WITH_CUDA
@@ -203,6 +203,7 @@ class Simulator::Implementation {
     }
   }
 
+  bool displaces() const { return parameters_.coupling == Coupling::displacement; }
   InstructionSet instructions() const { return parameters_.instructions.value_or(instructionSets().back()); }
 
   void addPour(const Pour& pour) {
@@ -289,7 +290,7 @@ class Simulator::Implementation {
 
   /// Before sand comes or goes in a region.
   void expectSand(const LocalRegion& region) {
-    if (!bodies_.empty() && parameters_.displacement) {
+    if (!bodies_.empty() && displaces()) {
       // A body that hangs high above the sand catches what comes down now.
       engine_->expectSand(region);
       placeBodies();
@@ -498,7 +499,7 @@ class Simulator::Implementation {
     StepRun run{};
     run.bounds = {solver.courant * grid_.spacing, solver.max_step, solver.fixed_step.value_or(0.0)};
     run.end = end_;
-    run.displacement = parameters_.displacement;
+    run.displacement = displaces();
     run.most_steps = std::numeric_limits<std::uint64_t>::max();
     run.time = time_;
     run.trial = trial_;
@@ -680,8 +681,11 @@ class Simulator::Implementation {
     view.axis_y = toVector3(to_body.col(1));
     view.axis_z = toVector3(to_body.col(2));
     view.position = toVector3(pose.translation());
-    view.linear = toVector3(twist.linear);
-    view.angular = toVector3(twist.angular);
+    const bool level = parameters_.coupling == Coupling::horizontal_drag;
+    const Eigen::Vector3d kept = level ? Eigen::Vector3d(1.0, 1.0, 0.0) : Eigen::Vector3d(1.0, 1.0, 1.0);
+    const Eigen::Vector3d kept_turn = level ? Eigen::Vector3d(0.0, 0.0, 1.0) : Eigen::Vector3d(1.0, 1.0, 1.0);
+    view.linear = toVector3(twist.linear.cwiseProduct(kept));
+    view.angular = toVector3(twist.angular.cwiseProduct(kept_turn));
     Eigen::AlignedBox3d box;
     for (int corner = 0; corner < 8; ++corner) {
       const Eigen::Vector3d steps(corner & 1 ? field.samples[0] - 1 : 0,

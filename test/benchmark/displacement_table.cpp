@@ -65,7 +65,7 @@ Scene sceneOf(const Case& about) {
 /// Sand inside the body at the end of its way. [%]
 double inside(const Case& about, bool displacement) {
   Scene scene = sceneOf(about);
-  scene.parameters.displacement = displacement;
+  scene.parameters.coupling = displacement ? Coupling::displacement : Coupling::drag;
   const double ends = scene.bodies.front().motion.back().time;
   Simulator simulator = buildSimulator(scene);
   simulator.advanceTo(ends);

@@ -77,7 +77,7 @@ void expectThatGivenIsGot(bool displacement, int scenes) {
   for (int scene = 0; scene < scenes; ++scene) {
     SCOPED_TRACE("scene " + std::to_string(scene));
     RandomSand sand = randomSand(random, randomCount(random, 5, 40), randomCount(random, 5, 40));
-    sand.parameters.displacement = displacement;
+    sand.parameters.coupling = displacement ? Coupling::displacement : Coupling::drag;
     const double spacing = sand.parameters.grid.spacing;
     const double stop = sand.parameters.grid.size.maxCoeff() / std::sqrt(9.81 * spacing);
     Simulator simulator = streamingSand(random, sand);

@@ -172,7 +172,7 @@ TEST_F(CudaBodies, MoveInSandOfManyKinds) {
 
 TEST_F(CudaBodies, OnlyDrag) {
   RandomScene scene = sceneWith(3, 1);
-  scene.sand.parameters.displacement = false;
+  scene.sand.parameters.coupling = Coupling::drag;
   scene.bodies.front().motion.resize(1);
   Pair pair(scene);
   pair.advance(scene.frame, 4);

@@ -67,7 +67,7 @@ TEST_F(CudaEdits, WhereABodyComesDownFromFarAbove) {
 }
 
 TEST_F(CudaEdits, AmongBodiesThatOnlyDrag) {
-  compareScenes(0, 2, [](RandomScene& scene) { scene.sand.parameters.displacement = false; });
+  compareScenes(0, 2, [](RandomScene& scene) { scene.sand.parameters.coupling = Coupling::drag; });
 }
 
 /// Bodies that were added have no pose, and are nowhere.

@@ -34,7 +34,7 @@ std::uint64_t compareMaps(const Map& large, int pours, int most_bodies, bool dis
     SCOPED_TRACE(std::to_string(map.size.columns) + " x " + std::to_string(map.size.rows));
     const int bodies = most_bodies > 0 ? randomCount(random, 1, most_bodies) : 0;
     RandomScene scene = tiltedScene(random, map.size, pours, bodies);
-    scene.sand.parameters.displacement = displacement;
+    scene.sand.parameters.coupling = displacement ? Coupling::displacement : Coupling::drag;
     scene.sand.parameters.solver.reconstruction =
         with_slopes ? Reconstruction::minmod : Reconstruction::constant;
     with_slopes = !with_slopes;

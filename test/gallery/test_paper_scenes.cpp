@@ -112,6 +112,39 @@ TEST(PaperScenes, PilesRestAtTheirAngles) {
   EXPECT_LT(sand.ledger().error(), 1e-6);
 }
 
+/// By how much the highest sand stands over the surface, in a ring of three cells around the block.
+double bermAround(const Simulator& sand, const Eigen::Vector2d& middle, double half_side, double level) {
+  const Grid& grid = sand.grid();
+  const Fields fields = sand.fields();
+  double berm = 0.0;
+  for (int j = 0; j < grid.rows; ++j) {
+    for (int i = 0; i < grid.columns; ++i) {
+      const double away =
+          std::max(std::abs(grid.x(i) - middle.x()), std::abs(grid.y(j) - middle.y())) - half_side;
+      if (away > 0.0 && away < 3.0 * grid.spacing)
+        berm = std::max(berm, fields.surface(grid.index(i, j)) - level);
+    }
+  }
+  return berm;
+}
+
+TEST(PaperScenes, PressedBlockRaisesABermByItsVerticalMotion) {
+  for (const char* name : {"pressed_block", "pressed_block_flat"}) {
+    const Scene scene = sceneNamed(name);
+    Simulator sand = buildSimulator(scene);
+    const Fields before = sand.fields();
+    sand.advanceTo(scene.duration);
+    const double berm = bermAround(sand, {0.8, 0.8}, 0.2, 0.3);
+    std::cout << name << ": berm of " << 1000.0 * berm << " mm\n";
+    if (scene.parameters.coupling == Coupling::drag) {
+      EXPECT_GT(berm, 0.25 * scene.parameters.grid.spacing);
+    } else {
+      EXPECT_EQ(sand.fields().depth, before.depth) << "without it the sand stays as it was";
+    }
+    EXPECT_LT(sand.ledger().error(), 1e-6);
+  }
+}
+
 /// Where the sand of a row ends. [m]
 double frontOf(const Simulator& sand, const Fields& fields, double y) {
   const Grid& grid = sand.grid();

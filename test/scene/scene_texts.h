@@ -30,7 +30,7 @@ bodies:
   - name: ball
     shape: {sphere: 0.2}
     motion: [{time: 0.0, position: [3.0, 1.0, 3.0]}]
-solver:   {reconstruction: constant, courant: 0.45, max_step: 0.01, fixed_step: 0.002}
+solver:   {reconstruction: constant, courant: 0.45, max_step: 0.01, fixed_step: 0.002, coupling: drag}
 duration: 10.0
 backend: cpu
 threads: 2

@@ -47,6 +47,7 @@ TEST(Scene, FullSceneGivesWhatItSays) {
   EXPECT_EQ(scene.parameters.edges.y_max, Edge::wall);
   EXPECT_DOUBLE_EQ(scene.parameters.material.friction_angle, 32.0 * M_PI / 180.0);
   EXPECT_EQ(scene.parameters.solver.fixed_step, 0.002);
+  EXPECT_EQ(scene.parameters.coupling, Coupling::drag);
   EXPECT_EQ(scene.parameters.backend, Backend::cpu);
   EXPECT_EQ(scene.parameters.threads, 2);
   ASSERT_TRUE(scene.parameters.grains.has_value());
@@ -146,6 +147,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"courant: 0.45", "courant: 1", "25: solver.courant: 1;", "between 0 and 1"},
         Mistake{"max_step: 0.01", "max_step: 0", "25: solver.max_step: 0;", "positive"},
         Mistake{"fixed_step: 0.002", "fixed_step: -1", "25: solver.fixed_step: -1;", "positive"},
+        Mistake{"coupling: drag", "coupling: push", "25: solver.coupling: push;",
+                "displacement, drag or horizontal_drag"},
         Mistake{"[0.6, 1.0, 0.45]", "[.nan, 1.0, 0.45]", "17: bodies[0].motion[0].position[0]: .nan;",
                 "finite"},
         Mistake{"[0.6, 1.0, 0.45]", "[1e30, 1.0, 0.45]", "17: bodies[0].motion[0].position[0]: 1e30;", "1e9"},

@@ -25,6 +25,13 @@ std::string toString(Backend backend);
 /// @throws InvalidParameter with key `backend`
 Backend backendFromString(const std::string& name);
 
+/// What bodies do to sand. All but the first are there to compare with the paper.
+enum class Coupling {
+  displacement,    ///< it makes way, and gets their velocity
+  drag,            ///< it gets their velocity: Eq. 20 to 24 alone
+  horizontal_drag  ///< the same without Eq. 21 to 24: bodies only turn about z and move along x and y
+};
+
 struct SimulatorParameters {
   GridParameters grid;
   Eigen::Vector3d gravity{0.0, 0.0, -9.81};  ///< in the grid's frame [m/s²]
@@ -34,8 +41,7 @@ struct SimulatorParameters {
   std::optional<GrainParameters> grains;  ///< none unless given
   Backend backend = Backend::automatic;
   int threads = 0;  ///< of the CPU backend; 0: as many as OpenMP offers
-  /// Whether sand makes way for bodies; false: Eq. 20 to 24 alone, to compare with the paper.
-  bool displacement = true;
+  Coupling coupling = Coupling::displacement;
   /// These two change no bit, only speed; for tests and benchmarks of the CPU backend.
   bool sleeping = true;                        ///< leave out cells that cannot move
   std::optional<InstructionSet> instructions;  ///< the fastest of the machine unless given
