@@ -30,7 +30,7 @@ Scene loadScene(const std::string& path) {
     return scene;
   } catch (const YAML::Exception& error) {
     const std::string line = error.mark.is_null() ? "" : ":" + std::to_string(error.mark.line + 1);
-    throw SceneError(oneLine(path + line + ": not valid YAML (" + error.msg + "); expected a scene"));
+    throw SceneError(path + line + ": not valid YAML (" + error.msg + "); expected a scene");
   }
 }
 

@@ -72,12 +72,6 @@ YAML::Mark markBelow(const YAML::Node& node, const std::string& path) {
 
 }  // namespace
 
-std::string oneLine(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
-  return text;
-}
-
 SceneValue::SceneValue(const YAML::Node& node, const SceneSource& source)
     : SceneValue(node, "", std::make_shared<const SceneSource>(source)) {}
 
@@ -197,7 +191,7 @@ void SceneValue::failBelow(const std::string& message) const {
 
 void SceneValue::raise(const YAML::Mark& mark, const std::string& message) const {
   const std::string line = mark.is_null() ? "" : ":" + std::to_string(mark.line + 1);
-  throw SceneError(oneLine(source_->name + line + ": " + message));
+  throw SceneError(source_->name + line + ": " + message);
 }
 
 std::string SceneValue::placeOf(const std::string& key) const {
