@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <sstream>
 #include <string>
 
 #include "missing_thickness.h"
@@ -22,6 +23,7 @@ constexpr int kMargin = 2;           ///< samples around the solid
 constexpr double kExactReach = 2.0;  ///< distances up to this many spacings are exact
 constexpr int kBlockSize = 16;       ///< samples along the edge of a block that one thread fills
 constexpr double kMostSamples = 1 << 27;
+constexpr double kFarthest = 1e6;  ///< of a vertex from the body's origin: floats hold squares of it [m]
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kProbes = 12;          ///< along each axis, of the winding number
 constexpr double kDeep = 0.5;        ///< of the way to the surface
@@ -206,8 +208,10 @@ void validate(const TriangleMesh& mesh, double spacing) {
   }
   if (mesh.triangles.empty()) throw InvalidParameter("mesh", "no triangles", "at least one");
   for (const Eigen::Vector3d& vertex : mesh.vertices) {
-    if (!vertex.allFinite())
-      throw InvalidParameter("mesh", "a vertex that is not finite", "finite coordinates");
+    if ((vertex.array().abs() <= kFarthest).all()) continue;
+    std::ostringstream found;
+    found << "a vertex at (" << vertex.x() << ", " << vertex.y() << ", " << vertex.z() << ")";
+    throw InvalidParameter("mesh", found.str(), "metres, at most a million");
   }
   for (const std::array<int, 3>& triangle : mesh.triangles) {
     for (const int corner : triangle) {

@@ -22,8 +22,9 @@ std::string text(const Value& value) {
 void requireRigid(const Eigen::Isometry3d& pose) {
   const Eigen::IOFormat on_one_line(Eigen::StreamPrecision, Eigen::DontAlignCols, ", ", "; ");
   const Eigen::Matrix3d rotation = pose.linear();
-  if (!pose.translation().allFinite() || !rotation.allFinite()) {
-    throw InvalidParameter("pose", text(pose.matrix().topRows<3>().format(on_one_line)), "finite numbers");
+  if (!isWithinReach(pose) || !rotation.allFinite()) {
+    throw InvalidParameter("pose", text(pose.matrix().topRows<3>().format(on_one_line)),
+                           "finite numbers, and metres up to 1e9");
   }
   const double stretch =
       (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
@@ -34,6 +35,8 @@ void requireRigid(const Eigen::Isometry3d& pose) {
 }
 
 }  // namespace
+
+bool isWithinReach(const Eigen::Isometry3d& pose) { return (pose.translation().array().abs() <= 1e9).all(); }
 
 Twist twistOf(const Eigen::Vector3d& way, const Eigen::AngleAxisd& turn, double duration) {
   return {way / duration, turn.axis() * (turn.angle() / duration)};

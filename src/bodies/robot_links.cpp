@@ -9,6 +9,7 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <Eigen/Geometry>
+#include <cctype>
 #include <cstdint>
 #include <exception>
 #include <filesystem>
@@ -20,6 +21,7 @@
 #include <system_error>
 #include <utility>
 
+#include "shallow_sand/core/one_line.h"
 #include "shallow_sand/core/parameters.h"
 
 namespace shallow_sand {
@@ -38,36 +40,54 @@ void requireReadable(const std::string& uri, std::uintmax_t bytes) {
   }
 }
 
-std::string contentOf(const std::string& path) {
+/// @param uri that errors name
+std::string contentOf(const std::string& path, const std::string& uri) {
   std::error_code error;
+  // Of devices and pipes, from which reading might never end, there is no size.
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
-  std::ifstream file(path, std::ios::binary);
-  if (error || !file) {
-    throw InvalidParameter("mesh", "'" + path + "', which cannot be read", "a readable file");
+  std::ifstream file;
+  if (!error) file.open(path, std::ios::binary);
+  if (!file.is_open()) {
+    throw InvalidParameter("mesh", "'" + uri + "', which cannot be read", "a readable file");
   }
-  requireReadable(path, bytes);
+  requireReadable(uri, bytes);
   return std::string((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
 }
 
-std::string retrieve(const std::string& uri) {
-  if (uri.find("://") == std::string::npos) return contentOf(uri);
-  const std::string file_scheme = "file://";
-  // The library would fetch others from wherever they lead.
-  if (uri.rfind(file_scheme, 0) != 0 && uri.rfind("package://", 0) != 0)
-    throw InvalidParameter("mesh", "'" + uri + "'", "package://PACKAGE/PATH or file:///PATH");
-  std::error_code error;
-  if (uri.rfind(file_scheme, 0) == 0) {
-    // Before it fills the memory. What is not found here may be written otherwise, such as with %20.
-    const std::uintmax_t bytes = std::filesystem::file_size(uri.substr(file_scheme.size()), error);
-    if (!error) requireReadable(uri, bytes);
+/// %20 is a blank.
+std::string decoded(const std::string& path) {
+  std::string text;
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    const auto isDigit = [&](std::size_t at) {
+      return at < path.size() && std::isxdigit(static_cast<unsigned char>(path[at])) != 0;
+    };
+    if (path[k] == '%' && isDigit(k + 1) && isDigit(k + 2)) {
+      text += static_cast<char>(std::stoi(path.substr(k + 1, 2), nullptr, 16));
+      k += 2;
+    } else {
+      text += path[k];
+    }
   }
+  return text;
+}
+
+std::string retrieve(const std::string& uri) {
+  if (uri.find("://") == std::string::npos) return contentOf(uri, uri);
+  // The library would fetch from wherever others lead.
+  if (uri.rfind("file:///", 0) == 0) {
+    const std::string path = uri.substr(std::string("file://").size());
+    std::error_code error;
+    return contentOf(std::filesystem::exists(path, error) ? path : decoded(path), uri);
+  }
+  if (uri.rfind("package://", 0) != 0)
+    throw InvalidParameter("mesh", "'" + uri + "'", "package://PACKAGE/PATH or file:///PATH");
   try {
     const resource_retriever::MemoryResource file = resource_retriever::Retriever().get(uri);
     requireReadable(uri, file.size);
     return std::string(reinterpret_cast<const char*>(file.data.get()), file.size);
   } catch (const resource_retriever::Exception& problem) {
     throw InvalidParameter("mesh", "'" + uri + "' (" + problem.what() + ")",
-                           "a readable file as package://PACKAGE/PATH or file:///PATH");
+                           "a readable file as package://PACKAGE/PATH");
   }
 }
 
@@ -131,7 +151,18 @@ Eigen::Isometry3d poseOf(const urdf::Pose& origin) {
          rotation.normalized();
 }
 
+/// urdfdom's parser goes as deep into elements as they go, until there is no stack left.
+bool isTooDeep(const std::string& urdf_xml) {
+  return tinyxml2::XMLDocument().Parse(urdf_xml.data(), urdf_xml.size()) ==
+         tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED;
+}
+
 urdf::ModelInterfaceSharedPtr parse(const std::string& urdf_xml) {
+  if (isTooDeep(urdf_xml)) {
+    throw InvalidParameter(
+        "robot_description",
+        "elements within more than " + std::to_string(TINYXML2_MAX_ELEMENT_DEPTH) + " others", "a URDF");
+  }
   std::string reason = "its log says why";
   try {
     if (const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(urdf_xml)) return model;
@@ -180,8 +211,8 @@ LinkGeometry geometryOf(const urdf::Link& link, const std::string& robot,
       if (!collision->geometry) throw InvalidParameter("geometry", "none", "box, cylinder, sphere or mesh");
       geometry.mesh.append(triangulate(shapeOf(*collision->geometry)), poseOf(collision->origin));
     } catch (const InvalidParameter& error) {
-      problems.push_back("robot '" + robot + "', link '" + link.name + "', collision element " +
-                         std::to_string(number) + " left out: " + error.what());
+      problems.push_back(oneLine("robot '" + robot + "', link '" + link.name + "', collision element " +
+                                 std::to_string(number) + " left out: " + error.what()));
     }
   }
   return geometry;
@@ -198,7 +229,7 @@ RobotGeometry collisionGeometry(const std::string& urdf_xml) {
     const auto count = written.find(name);
     const std::size_t known = link->collision_array.size();
     if (count != written.end() && count->second > known) {
-      robot.problems.push_back(cutShort(robot.robot, name, known + 1));
+      robot.problems.push_back(oneLine(cutShort(robot.robot, name, known + 1)));
     }
     LinkGeometry geometry = geometryOf(*link, robot.robot, robot.problems);
     if (!geometry.mesh.triangles.empty()) robot.links.push_back(std::move(geometry));

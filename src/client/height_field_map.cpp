@@ -8,8 +8,10 @@
 namespace shallow_sand {
 namespace {
 
-/// More updates are not kept while a map is on its way: the map will hold what the oldest said.
+/// More updates, or updates of more cells (256 MiB of depths), are not kept while a map is on its way: the
+/// map will hold what the oldest said.
 constexpr std::size_t kMostWaiting = 4096;
+constexpr std::uint64_t kMostWaitingCells = std::uint64_t{1} << 26;
 
 struct NamedValues {
   const char* name;
@@ -172,7 +174,14 @@ void HeightFieldMap::replace(const HeightField& message, Change& change) {
 
 void HeightFieldMap::keepWaiting(const HeightFieldUpdate& update) {
   waiting_.push_back(update);
-  if (waiting_.size() > kMostWaiting) waiting_.pop_front();
+  waiting_cells_ += cellsOf(update);
+  while (waiting_.size() > kMostWaiting || (waiting_.size() > 1 && waiting_cells_ > kMostWaitingCells))
+    dropOldestWaiting();
+}
+
+void HeightFieldMap::dropOldestWaiting() {
+  waiting_cells_ -= cellsOf(waiting_.front());
+  waiting_.pop_front();
 }
 
 void HeightFieldMap::applyWaiting(Change& change) {
@@ -193,7 +202,7 @@ void HeightFieldMap::applyWaiting(Change& change) {
       field_->sequence = update.sequence;
       field_->header = update.header;
     }
-    waiting_.pop_front();
+    dropOldestWaiting();
   }
 }
 

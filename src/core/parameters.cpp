@@ -3,6 +3,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "shallow_sand/core/one_line.h"
+
 namespace shallow_sand {
 
 namespace {
@@ -50,7 +52,8 @@ int cellsAlong(const std::string& key, double size, double spacing) {
 
 InvalidParameter::InvalidParameter(const std::string& key, const std::string& found,
                                    const std::string& expected)
-    : std::runtime_error(key + ": " + found + "; expected " + expected), expected_(expected) {}
+    : std::runtime_error(oneLine(key) + ": " + oneLine(found) + "; expected " + oneLine(expected)),
+      expected_(expected) {}
 
 void GridParameters::validate() const {
   requirePositive("grid.spacing", spacing, "metres");

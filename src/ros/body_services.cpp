@@ -2,47 +2,25 @@
 
 #include <ros/console.h>
 
+#include <algorithm>
+#include <cctype>
 #include <sstream>
 
 #include "shallow_sand/bodies/body_geometry.h"
-#include "shallow_sand/bodies/robot_links.h"
 #include "shallow_sand/ros/poses.h"
+#include "shallow_sand/ros/requested_mesh.h"
 
 namespace shallow_sand {
 namespace {
 
-TriangleMesh meshOf(const shape_msgs::SolidPrimitive& shape) {
-  using Solid = shape_msgs::SolidPrimitive;
-  const auto require = [&shape](std::size_t count, const std::string& expected) {
-    if (shape.dimensions.size() == count) return;
-    throw InvalidParameter("shape.dimensions", std::to_string(shape.dimensions.size()) + " numbers",
-                           expected);
-  };
-  switch (shape.type) {
-    case Solid::BOX:
-      require(3, "x, y, z of a BOX");
-      return triangulate(Box{Eigen::Vector3d(shape.dimensions.data())});
-    case Solid::SPHERE:
-      require(1, "the radius of a SPHERE");
-      return triangulate(Sphere{shape.dimensions[Solid::SPHERE_RADIUS]});
-    case Solid::CYLINDER:
-      require(2, "height and radius of a CYLINDER");
-      return triangulate(
-          Cylinder{shape.dimensions[Solid::CYLINDER_RADIUS], shape.dimensions[Solid::CYLINDER_HEIGHT]});
-    default:
-      throw InvalidParameter("shape.type", std::to_string(shape.type),
-                             "BOX, SPHERE or CYLINDER, or a mesh instead of a shape");
-  }
-}
-
-TriangleMesh meshOf(const AddBody::Request& request) {
-  if (request.mesh.empty()) return meshOf(request.shape);
-  if (!request.shape.dimensions.empty()) {
-    throw InvalidParameter("shape.dimensions", "given beside mesh " + request.mesh, "one of the two");
-  }
-  Eigen::Vector3d scale(request.scale.x, request.scale.y, request.scale.z);
-  if (scale.isZero(0.0)) scale.setOnes();
-  return readMesh(request.mesh, scale);
+/// Every ~status repeats names, and so does every line of the log about a body.
+void requireName(const std::string& key, const std::string& name) {
+  constexpr std::size_t kLongest = 255;
+  const bool is_line =
+      std::none_of(name.begin(), name.end(), [](unsigned char letter) { return std::iscntrl(letter) != 0; });
+  if (is_line && name.size() <= kLongest) return;
+  throw InvalidParameter(key, name,
+                         "at most " + std::to_string(kLongest) + " bytes without control characters");
 }
 
 /// @throws InvalidParameter if it cannot be sampled
@@ -50,7 +28,7 @@ BodyGeometry geometryOf(const AddBody::Request& request, double sand_spacing) {
   BodyGeometryOptions options;
   if (!request.mesh_as.empty()) options.shape = linkShapeFromString(request.mesh_as, "mesh_as");
   if (!request.mesh.empty()) options.cache = defaultCacheFolder();
-  return makeBodyGeometry(meshOf(request), sand_spacing, options);
+  return makeBodyGeometry(requestedMesh(request), sand_spacing, options);
 }
 
 }  // namespace
@@ -79,11 +57,13 @@ BodyServices::BodyServices(const ros::NodeHandle& node, LoopCalls& loop, const G
 }
 
 std::string BodyServices::add(const AddBody::Request& request) {
+  requireName("name", request.name);
   const std::string& frame = request.pose.header.frame_id;
   const Eigen::Isometry3d pose = rigid(request.pose.pose);
   if (request.follow && frame.empty()) {
     throw InvalidParameter("pose.header.frame_id", "empty", "the tf frame to follow");
   }
+  if (request.follow) requireName("pose.header.frame_id", frame);
   if (request.follow && request.handle) {
     throw InvalidParameter("handle", "given beside follow", "one of the two: tf moves what follows a frame");
   }

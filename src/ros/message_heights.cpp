@@ -62,7 +62,9 @@ CellValues heightsOf(const sensor_msgs::PointCloud2& cloud, const Eigen::Isometr
   requireSizes(cloud);
   const std::size_t offsets[]{offsetOf(cloud, "x"), offsetOf(cloud, "y"), offsetOf(cloud, "z")};
   MeanHeights heights(grid);
-  for (std::uint32_t row = 0; row < cloud.height; ++row) {
+  // Rows of no points have no bytes that would bound their number.
+  const std::uint32_t rows = cloud.width == 0 ? 0 : cloud.height;
+  for (std::uint32_t row = 0; row < rows; ++row) {
     for (std::uint32_t column = 0; column < cloud.width; ++column) {
       const std::size_t at = static_cast<std::size_t>(row) * cloud.row_step +
                              static_cast<std::size_t>(column) * cloud.point_step;

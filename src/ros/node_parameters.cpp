@@ -1,11 +1,13 @@
 #include "shallow_sand/ros/node_parameters.h"
 
+#include <xmlrpcpp/XmlRpcException.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <type_traits>
 
+#include "shallow_sand/core/one_line.h"
 #include "shallow_sand/ros/nearest_name.h"
 #include "shallow_sand/ros/parameter_table.h"
 #include "shallow_sand/scene/mesh_file.h"
@@ -15,6 +17,7 @@ namespace shallow_sand {
 
 namespace {
 
+/// @throws XmlRpc::XmlRpcException for dates and binary data
 YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
   switch (value.getType()) {
     case XmlRpc::XmlRpcValue::TypeBoolean:
@@ -36,6 +39,20 @@ YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
     default:
       return YAML::Node(static_cast<std::string>(value));
   }
+}
+
+/// The keys of a map, to which there is nothing in a scene file for dates and binary data.
+YAML::Node toYaml(XmlRpc::XmlRpcValue& map, const std::string& source) {
+  YAML::Node yaml(YAML::NodeType::Map);
+  for (auto& [key, value] : map) {
+    try {
+      yaml[key] = toYaml(value);
+    } catch (const XmlRpc::XmlRpcException& problem) {
+      throw SceneError(source + ": " + key + ": a date or binary data (" + problem.getMessage() +
+                       "); expected numbers, texts, true or false, and lists and maps of them");
+    }
+  }
+  return yaml;
 }
 
 /// Takes a key out of the node's parameters, so that what stays are the keys of a scene.
@@ -72,7 +89,7 @@ void requireSceneKeys(const YAML::Node& yaml, const std::string& source) {
     const std::string key = entry.first.as<std::string>();
     if (std::find(scene_keys.begin(), scene_keys.end(), key) == scene_keys.end())
       throw SceneError(source + ": " + key + ": unknown; expected a known key, such as " +
-                       nearestName(key, known));
+                       nearestName(oneLine(key), known));
   }
 }
 
@@ -162,13 +179,14 @@ std::vector<RobotParameters> takeRobots(YAML::Node& parameters, const std::strin
 }  // namespace
 
 NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
-  const std::string source = "parameters of " + private_node.getNamespace();
-  YAML::Node yaml(YAML::NodeType::Map);
   XmlRpc::XmlRpcValue all;
-  if (private_node.getParam(private_node.getNamespace(), all) &&
-      all.getType() == XmlRpc::XmlRpcValue::TypeStruct) {
-    yaml = toYaml(all);
-  }
+  private_node.getParam(private_node.getNamespace(), all);
+  return readNodeParameters(all, "parameters of " + private_node.getNamespace());
+}
+
+NodeParameters readNodeParameters(XmlRpc::XmlRpcValue& all, const std::string& source) {
+  YAML::Node yaml(YAML::NodeType::Map);
+  if (all.getType() == XmlRpc::XmlRpcValue::TypeStruct) yaml = toYaml(all, source);
   NodeParameters parameters;
   parameters.robots = takeRobots(yaml, source);
   try {

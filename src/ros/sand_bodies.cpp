@@ -1,12 +1,14 @@
 #include "shallow_sand/ros/sand_bodies.h"
 
 #include <ros/console.h>
+#include <tf2/exceptions.h>
 #include <tf2_eigen/tf2_eigen.h>
 
 #include <algorithm>
 #include <limits>
 #include <sstream>
 
+#include "shallow_sand/bodies/motion.h"
 #include "shallow_sand/scene/simulation.h"
 
 namespace shallow_sand {
@@ -152,7 +154,12 @@ Eigen::Isometry3d SandBodies::poseOf(const std::string& frame) const {
 }
 
 Eigen::Isometry3d SandBodies::lookUp(const TfFrame& frame, const ros::Time& time) const {
-  return rigid(transforms_.buffer().lookupTransform(sand_frame_, frame.name, time).transform) * frame.offset;
+  const Eigen::Isometry3d pose =
+      rigid(transforms_.buffer().lookupTransform(sand_frame_, frame.name, time).transform) * frame.offset;
+  if (isWithinReach(pose)) return pose;
+  std::ostringstream problem;
+  problem << "it is at (" << pose.translation().transpose() << "); expected metres up to 1e9";
+  throw tf2::InvalidArgumentException(problem.str());
 }
 
 void SandBodies::restartClock() {

@@ -6,33 +6,21 @@
 #include <ros/this_node.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <sstream>
 
 #include "shallow_sand/ros/message_heights.h"
 #include "shallow_sand/ros/named_frame.h"
 #include "shallow_sand/scene/terrain_heights.h"
+#include "shallow_sand/surface/cell_heights.h"
 
 namespace shallow_sand {
 namespace {
 
 constexpr double kLongestWait = 60.0;
-/// As in ~edit_sand.
-constexpr double kHighest = 1e6;
 
 const char kCloud[] = "sensor_msgs/PointCloud2";
 const char kMarker[] = "visualization_msgs/Marker";
-
-void requireBounded(const CellValues& heights, const Grid& grid) {
-  for (std::size_t k = 0; k < heights.values.size(); ++k) {
-    if (heights.given[k] == 0 || std::abs(static_cast<double>(heights.values[k])) <= kHighest) continue;
-    const auto columns = static_cast<std::size_t>(grid.columns);
-    std::ostringstream found;
-    found << heights.values[k] << " in cell (" << k % columns << ", " << k / columns << ")";
-    throw InvalidParameter("height", found.str(), "metres, at most a million");
-  }
-}
 
 EditOperation operationOf(const SetSand::Request& request) {
   if (request.heights_as == "depth") return EditOperation::set;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "shallow_sand/core/one_line.h"
+
 namespace shallow_sand {
 namespace {
 
@@ -94,7 +96,8 @@ void TransformReader::refuse(const std::string& frame, const std::string& proble
   const ros::WallTime now = ros::WallTime::now();
   if (!refusal.told.isZero() && (now - refusal.told).toSec() < kTellAgain) return;
   refusal.told = now;
-  ROS_ERROR_STREAM("tf frame " << frame << ": a transform is refused, the one before stays: " << problem);
+  ROS_ERROR_STREAM("tf frame " << oneLine(frame)
+                               << ": a transform is refused, the one before stays: " << problem);
 }
 
 std::string TransformReader::refusal(const std::string& frame) const {

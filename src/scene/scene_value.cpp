@@ -73,12 +73,6 @@ YAML::Mark markBelow(const YAML::Node& node, const std::string& path) {
 
 }  // namespace
 
-std::string oneLine(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
-  return text;
-}
-
 YAML::Node loadYaml(const std::string& path, const std::string& expected) {
   std::ifstream file(path);
   if (!file || std::filesystem::is_directory(path)) {
@@ -88,7 +82,7 @@ YAML::Node loadYaml(const std::string& path, const std::string& expected) {
     return YAML::Load(file);
   } catch (const YAML::Exception& error) {
     const std::string line = error.mark.is_null() ? "" : ":" + std::to_string(error.mark.line + 1);
-    throw SceneError(oneLine(path + line + ": not valid YAML (" + error.msg + "); expected " + expected));
+    throw SceneError(path + line + ": not valid YAML (" + error.msg + "); expected " + expected);
   }
 }
 
@@ -211,7 +205,7 @@ void SceneValue::failBelow(const std::string& message) const {
 
 void SceneValue::raise(const YAML::Mark& mark, const std::string& message) const {
   const std::string line = mark.is_null() ? "" : ":" + std::to_string(mark.line + 1);
-  throw SceneError(oneLine(source_->name + line + ": " + message));
+  throw SceneError(source_->name + line + ": " + message);
 }
 
 std::string SceneValue::placeOf(const std::string& key) const {

@@ -18,9 +18,6 @@ struct Bound {
   const char* expected;
 };
 
-/// The text with blanks for all that is no part of a line: errors are one, whatever the file holds.
-std::string oneLine(std::string text);
-
 /// Where a scene comes from.
 struct SceneSource {
   std::string name;    ///< the file, or what stands for it in errors

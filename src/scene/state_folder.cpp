@@ -19,9 +19,7 @@ bool holds(const fs::path& folder, const fs::path& file) {
 fs::path fileWithin(const fs::path& folder, const std::string& name) {
   const auto isControl = [](unsigned char letter) { return std::iscntrl(letter) != 0; };
   const auto refuse = [&](const std::string& found) {
-    std::string told = name;
-    std::replace_if(told.begin(), told.end(), isControl, '?');
-    throw InvalidParameter("file", told + found, "the name of a file in the folder " + folder.string());
+    throw InvalidParameter("file", name + found, "the name of a file in the folder " + folder.string());
   };
   const fs::path given = name;
   // Functions of the system would read a name to its first zero only, and the log a line.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -106,6 +107,17 @@ CellValues MeanHeights::values() const {
     result.given[k] = 1;
   }
   return result;
+}
+
+void requireBounded(const CellValues& heights, const Grid& grid) {
+  constexpr double kHighest = 1e6;
+  for (std::size_t k = 0; k < heights.values.size(); ++k) {
+    if (heights.given[k] == 0 || std::abs(static_cast<double>(heights.values[k])) <= kHighest) continue;
+    const auto columns = static_cast<std::size_t>(grid.columns);
+    std::ostringstream found;
+    found << heights.values[k] << " in cell (" << k % columns << ", " << k / columns << ")";
+    throw InvalidParameter("height", found.str(), "metres, at most a million");
+  }
 }
 
 HighestTriangles::HighestTriangles(const Grid& grid)

@@ -566,6 +566,8 @@ TEST(DistanceField, refusesWhatItCannotSample) {
   TriangleMesh wrong = box;
   wrong.vertices[3].z() = std::nan("");
   EXPECT_EQ(keyOfError(wrong, 0.1), "mesh");
+  wrong.vertices[3].z() = 1.1e6;
+  EXPECT_EQ(keyOfError(wrong, 1e6), "mesh");
   wrong = box;
   wrong.triangles[2][1] = 8;
   EXPECT_EQ(keyOfError(wrong, 0.1), "mesh");

@@ -145,6 +145,8 @@ TEST(Motion, refusesWhatIsNoPose) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation().y() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(keyOfError([&] { motion.append(0.0, pose); }), "pose");
+  pose.translation().y() = -1.1e9;
+  EXPECT_EQ(keyOfError([&] { motion.append(0.0, pose); }), "pose");
   pose = Eigen::Isometry3d::Identity();
   pose.linear()(0, 1) = std::numeric_limits<double>::infinity();
   EXPECT_EQ(keyOfError([&] { motion.append(0.0, pose); }), "pose");

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -266,6 +267,44 @@ TEST(RobotLinks, whatIsNoUrdfIsRefused) {
                                   std::string("<house/>"), std::string("<robot name=\"empty\"/>")}) {
     EXPECT_EQ(messageOf(text).rfind("robot_description: ", 0), 0u) << text << " gave " << messageOf(text);
   }
+}
+
+TEST(RobotLinks, elementsTooDeepForTheParsersStackAreRefused) {
+  std::string deep;
+  for (int depth = 0; depth < 200000; ++depth) deep += "<a>";
+  EXPECT_NE(messageOf(robot(deep)).find("robot_description: elements within more than"), std::string::npos)
+      << messageOf(robot(deep));
+}
+
+TEST(RobotLinks, namesOfAnyLengthAndLettersMakeProblemsOfALine) {
+  const std::string name = "a&#10;" + std::string(1000000, 'x');
+  const RobotGeometry found = collisionGeometry(
+      robot("<link name=\"" + name + "\">" + collision("<sphere radius=\"0\"/>") + "</link>"));
+  ASSERT_EQ(found.problems.size(), 1u);
+  EXPECT_LT(found.problems[0].size(), 3000u);
+  EXPECT_EQ(found.problems[0].find('\n'), std::string::npos);
+}
+
+TEST(RobotLinks, devicesAreNoMeshes) {
+  // Of these, one never ends, and one waits for ever.
+  const std::string pipe = "/tmp/shallow_sand_pipe_" + std::to_string(getpid());
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& uri :
+       {std::string("/dev/zero"), std::string("file:///dev/zero"), std::string("file:///dev%2Fzero"), pipe,
+        "file://" + pipe, std::string("file://") + std::string(10000, 'x'),
+        std::string("file:///") + std::string(10000, 'x')}) {
+    EXPECT_THROW(readMesh(uri, Eigen::Vector3d::Ones()), InvalidParameter) << uri;
+  }
+  std::remove(pipe.c_str());
+}
+
+TEST(RobotLinks, addressesOfFilesMayBeWrittenInCode) {
+  const TemporaryFile file(" %41.stl", boxAsStl());
+  std::string coded = file.uri();
+  EXPECT_EQ(readMesh(coded, Eigen::Vector3d::Ones()).triangles.size(), 12u);
+  coded.replace(coded.find(' '), 1, "%20");
+  coded.replace(coded.find("%41"), 3, "%2541");
+  EXPECT_EQ(readMesh(coded, Eigen::Vector3d::Ones()).triangles.size(), 12u);
 }
 
 }  // namespace

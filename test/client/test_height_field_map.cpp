@@ -138,5 +138,29 @@ TEST(HeightFieldMap, AMapThatIsAskedForChangesOnlyWhatWasMissed) {
   EXPECT_EQ(follower.field()->depth, healed.depth);
 }
 
+/// An update of so many cells takes its place in the memory of who waits for a map.
+TEST(HeightFieldMap, LargeUpdatesAreNotKeptWithoutEnd) {
+  constexpr std::uint32_t kSide = 2048;
+  HeightFieldUpdate update;
+  update.map = 1;
+  update.columns = update.rows = kSide;
+  update.depth.assign(std::size_t{kSide} * kSide, 0.5f);
+  HeightFieldMap follower;
+  for (update.sequence = 1; update.sequence <= 17; ++update.sequence) follower.take(update);
+  HeightField map;
+  map.map = 1;
+  map.columns = map.rows = kSide;
+  map.spacing = 0.1f;
+  map.bed = map.depth = update.depth;
+  // The first was dropped when the last came.
+  follower.take(map);
+  EXPECT_EQ(follower.field()->sequence, 0u);
+  EXPECT_TRUE(follower.needsMap());
+  map.sequence = 1;
+  follower.take(map);
+  EXPECT_EQ(follower.field()->sequence, 17u);
+  EXPECT_FALSE(follower.needsMap());
+}
+
 }  // namespace
 }  // namespace shallow_sand

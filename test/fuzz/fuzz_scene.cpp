@@ -1,4 +1,4 @@
-#include "feed.h"
+#include "feed_files.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   shallow_sand::feedScene(data, size);

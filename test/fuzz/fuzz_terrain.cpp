@@ -2,7 +2,7 @@
 #include <cctype>
 #include <functional>
 
-#include "feed.h"
+#include "feed_files.h"
 
 namespace {
 

@@ -1,33 +1,15 @@
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-
-#include "fuzz/feed.h"
+#include "fuzz/feed_files.h"
+#include "fuzz/feed_urdf.h"
+#include "fuzz/replay.h"
 
 namespace shallow_sand {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
-
-/// Reads every file that fuzzing found worth keeping, by the way the fuzzer read it.
-template <class Feed>
-void replay(const std::string& subject, Feed feed) {
-  std::size_t files = 0;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(SHALLOW_SAND_SOURCE_DIR "/test/fuzz/corpus/" + subject)) {
-    std::ifstream file(entry.path(), std::ios::binary);
-    const Bytes bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    EXPECT_NO_THROW(feed(bytes.data(), bytes.size())) << entry.path();
-    ++files;
-  }
-  EXPECT_GT(files, 0u);
-}
-
 TEST(Corpus, Scenes) { replay("scene", feedScene); }
 
 TEST(Corpus, TerrainFiles) { replay("terrain", feedTerrain); }
+
+TEST(Corpus, RobotDescriptions) { replay("urdf", feedUrdf); }
 
 }  // namespace
 }  // namespace shallow_sand

@@ -160,6 +160,9 @@ class Bodies(unittest.TestCase):
                 (dict(mesh, mesh="package://shallow_sand/package.xml"), ("mesh", "triangles")),
                 (dict(add, pose=pose(0.5, 0.5, 0.5, orientation=(0.0, 0.0, 0.0, 2.0))), ("orientation", "length 1")),
                 (dict(add, pose=pose(float("nan"), 0.5, 0.5)), ("position", "nan", "finite")),
+                (dict(add, pose=pose(1e300, 0.5, 0.5)), ("pose", "1e+300", "1e9")),
+                (dict(add, name="long" * 100), ("name", "at most 255 bytes")),
+                (dict(add, name="two\nlines"), ("name", "two lines", "control characters")),
                 (dict(add, pose=pose(0.0, 0.0, 0.0, frame="limbo")), ("limbo",)),
                 (dict(add, follow=True), ("frame_id", "empty")),
             ]

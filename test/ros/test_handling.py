@@ -76,7 +76,7 @@ class Handling(unittest.TestCase):
     def test_pours_that_are_refused(self):
         nan = float("nan")
         refusals = [
-            (pour(nan, 0.5, 0.1, 0.1), ("position", "nan", "finite")),
+            (pour(nan, 0.5, 0.1, 0.1), ("position", "nan", "million")),
             (pour(0.5, 0.5, nan, 0.1), ("radius", "nan", "above 0")),
             (pour(0.5, 0.5, 0.0, 0.1), ("radius", "above 0")),
             (pour(0.5, 0.5, 1.5, 0.1), ("radius", "1.5", "at most the grid's 1.0")),

@@ -33,9 +33,9 @@ struct DistanceField {
 /// series, found wrong by up to 0.1: only where a mesh is open, and the number passes through ½ off its
 /// surface, can that move the zero. Triangles without area are left out. A wall thinner than the spacing may
 /// fall between the samples. Runs on OpenMP's threads.
-/// @throws InvalidParameter with key `mesh` for a mesh without area, a vertex that is not finite or a
-/// triangle with a vertex that is not there; with key `spacing` if that is not positive and finite or takes
-/// more than 2^27 samples
+/// @throws InvalidParameter with key `mesh` for a mesh without area, a vertex farther than a million metres
+/// or a triangle with a vertex that is not there; with key `spacing` if that is not positive and finite or
+/// takes more than 2^27 samples
 DistanceField computeDistanceField(const TriangleMesh& mesh, double spacing);
 
 /// How to sample a mesh whose thin parts are to be made thicker.

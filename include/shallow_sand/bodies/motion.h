@@ -11,6 +11,9 @@ struct Twist {
   Eigen::Vector3d angular{0, 0, 0};  ///< [rad/s]
 };
 
+/// Whether a pose is no farther than 1e9 m along any axis: of places, floats have to hold squares.
+bool isWithinReach(const Eigen::Isometry3d& pose);
+
 /// With which a body goes `way` [m] and makes a turn, both in `duration` [s].
 Twist twistOf(const Eigen::Vector3d& way, const Eigen::AngleAxisd& turn, double duration);
 
@@ -18,8 +21,8 @@ Twist twistOf(const Eigen::Vector3d& way, const Eigen::AngleAxisd& turn, double 
 /// body turns about one axis, both at constant rate. Before the first and after the last pose the body rests.
 class Motion {
  public:
-  /// @throws InvalidParameter if the pose is not finite, its rotation not orthonormal within 1e-3, or `time`
-  /// not after the last one
+  /// @throws InvalidParameter if the pose is not finite or not within reach, its rotation not orthonormal
+  /// within 1e-3, or `time` not after the last one
   void append(double time, const Eigen::Isometry3d& pose);
   /// Drops what no query at or after `time` needs.
   void forgetBefore(double time);

@@ -44,10 +44,12 @@ class HeightFieldMap {
   void replace(const HeightField& message, Change& change);
   void applyWaiting(Change& change);
   void keepWaiting(const HeightFieldUpdate& update);
+  void dropOldestWaiting();
 
   std::optional<HeightField> field_;
   std::optional<HeightField> earlier_;  // a map that came when updates after it were known already
   std::deque<HeightFieldUpdate> waiting_;
+  std::uint64_t waiting_cells_ = 0;
   bool missing_ = false;  // an update was refused
 };
 

@@ -10,7 +10,7 @@
 
 namespace shallow_sand {
 
-/// A parameter outside of its bounds. what() reads "KEY: FOUND; expected EXPECTED".
+/// A parameter outside of its bounds. what() is one line, "KEY: FOUND; expected EXPECTED".
 class InvalidParameter : public std::runtime_error {
  public:
   InvalidParameter(const std::string& key, const std::string& found, const std::string& expected);

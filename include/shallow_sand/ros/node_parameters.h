@@ -1,6 +1,7 @@
 #pragma once
 
 #include <ros/node_handle.h>
+#include <xmlrpcpp/XmlRpcValue.h>
 
 #include <string>
 #include <vector>
@@ -46,5 +47,8 @@ struct NodeParameters {
 
 /// Reads and checks the private parameters. @throws SceneError naming the parameter
 NodeParameters readNodeParameters(const ros::NodeHandle& private_node);
+/// The same for parameters that came from the server.
+/// @param all no parameters unless it is a map; not changed @param source names them in errors
+NodeParameters readNodeParameters(XmlRpc::XmlRpcValue& all, const std::string& source);
 
 }  // namespace shallow_sand

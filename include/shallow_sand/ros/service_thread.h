@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "shallow_sand/core/one_line.h"
 #include "shallow_sand/ros/loop_calls.h"
 
 namespace shallow_sand {
@@ -37,7 +38,7 @@ class ServiceThread {
         response.success = true;
       } catch (const std::exception& problem) {
         response = {};
-        response.message = problem.what();
+        response.message = oneLine(problem.what());
         refusals.tell(response.message);
       }
       // False would be a failure of the call, without a message.

@@ -7,6 +7,7 @@
 
 #include "shallow_sand/bodies/body_geometry.h"
 #include "shallow_sand/bodies/shape.h"
+#include "shallow_sand/core/one_line.h"
 #include "shallow_sand/core/parameters.h"
 #include "shallow_sand/sim/simulator.h"
 
@@ -20,7 +21,7 @@ namespace shallow_sand {
 /// number is left out where it is not known.
 class SceneError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit SceneError(const std::string& message) : std::runtime_error(oneLine(message)) {}
 };
 
 /// Where a body is at one time.

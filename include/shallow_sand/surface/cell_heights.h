@@ -43,4 +43,8 @@ class HighestTriangles {
   std::uint64_t covered_ = 0;  ///< cells, and rows that were looked at
 };
 
+/// @throws InvalidParameter with key `height` for one above a million metres, or no number: of waves on
+/// deeper sand no step is short enough
+void requireBounded(const CellValues& heights, const Grid& grid);
+
 }  // namespace shallow_sand

@@ -15,50 +15,11 @@
 #include <string>
 #include <vector>
 
+#include "fuzz/outcome.h"
+#include "fuzz/quick_grid.h"
 #include "shallow_sand/scene/scene.h"
 
 namespace shallow_sand {
-
-/// What a reader made of some bytes: empty if it took them, else its error. Any other exception than a
-/// SceneError of one line that says what was expected is a fault of ours, and goes on to the caller.
-template <class Read>
-std::string outcomeOf(Read read) {
-  try {
-    read();
-    return "";
-  } catch (const SceneError& error) {
-    const std::string message = error.what();
-    if (message.find('\n') != std::string::npos || message.find("; expected ") == std::string::npos) {
-      throw std::logic_error("not one clear line: " + message);
-    }
-    return message;
-  }
-}
-
-/// The number below some keys of a scene, as far as it is one.
-inline double numberAt(YAML::Node node, const std::string& key, int item, double otherwise) {
-  for (const std::string& name : {std::string("grid"), key}) {
-    if (!node.IsMap()) {
-      return otherwise;
-    }
-    node.reset(static_cast<const YAML::Node&>(node)[name]);
-  }
-  if (node.IsSequence() && item < static_cast<int>(node.size())) {
-    node.reset(node[item]);
-  }
-  double number = otherwise;
-  return node.IsScalar() && YAML::convert<double>::decode(node, number) ? number : otherwise;
-}
-
-/// Whether a scene's grid is one that is read in no time.
-inline bool isQuick(const YAML::Node& root) {
-  constexpr double kMostCells = 2e4;
-  const GridParameters defaults;
-  const double width = numberAt(root, "size", 0, defaults.size.x());
-  const double height = numberAt(root, "size", 1, defaults.size.y());
-  const double spacing = numberAt(root, "spacing", 0, defaults.spacing);
-  return !(width * height > 1.01 * kMostCells * spacing * spacing);
-}
 
 /// Reads bytes as a scene file.
 inline std::string feedScene(const std::uint8_t* data, std::size_t size) {
@@ -74,7 +35,7 @@ inline std::string feedScene(const std::uint8_t* data, std::size_t size) {
     throw std::runtime_error("no file in memory");
   }
   const std::shared_ptr<void> closed(nullptr, [file](void*) { close(file); });
-  return outcomeOf([file] { loadScene("/proc/self/fd/" + std::to_string(file)); });
+  return outcomeOf<SceneError>([file] { loadScene("/proc/self/fd/" + std::to_string(file)); });
 }
 
 /// A file in memory as long as this lives. The bytes must live longer.
@@ -133,10 +94,10 @@ inline std::vector<std::string> feedTerrain(const std::uint8_t* data, std::size_
   }
   YAML::Node scene = YAML::Load("{grid: {size: [3, 2], spacing: 0.25}, bed: {no_data: 0}}");
   scene["bed"]["file"] = kPath;
-  std::vector<std::string> outcomes{outcomeOf([&scene] { readScene(scene, "scene"); })};
+  std::vector<std::string> outcomes{outcomeOf<SceneError>([&scene] { readScene(scene, "scene"); })};
   scene["bed"]["origin"] = std::vector<double>{-0.1, -0.2};
   scene["bed"]["size"] = std::vector<double>{3.3, 2.5};
-  outcomes.push_back(outcomeOf([&scene] { readScene(scene, "scene"); }));
+  outcomes.push_back(outcomeOf<SceneError>([&scene] { readScene(scene, "scene"); }));
   for (std::size_t k = 0; k < traits.kinds.size(); ++k) {
     outcomes.push_back("trait " + std::to_string(k) + " " + std::to_string(traits.kinds[k]));
   }
