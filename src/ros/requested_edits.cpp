@@ -11,12 +11,18 @@ namespace {
 
 /// Bound on lengths: what is larger is no map, and of waves on deeper sand no step is short enough. [m]
 constexpr double kLongest = 1e6;
+/// Of a place: UTM counts up to 1e7. [m]
+constexpr double kFarthest = 1e8;
+
+void requireWithin(double bound, const std::string& key, double value, const char* expected) {
+  if (std::abs(value) <= bound) return;
+  std::ostringstream found;
+  found << value;
+  throw InvalidParameter(key, found.str(), expected);
+}
 
 void requireBounded(const std::string& key, double length) {
-  if (std::abs(length) <= kLongest) return;
-  std::ostringstream found;
-  found << length;
-  throw InvalidParameter(key, found.str(), "metres, at most a million");
+  requireWithin(kLongest, key, length, "metres, at most a million");
 }
 
 Region::Shape shapeOf(const EditSand::Request& request) {
@@ -65,9 +71,10 @@ Edit editOf(const EditSand::Request& request) {
 }
 
 Eigen::Vector3d positionOf(const std::string& key, const geometry_msgs::Point& point) {
-  requireBounded(key + ".x", point.x);
-  requireBounded(key + ".y", point.y);
-  requireBounded(key + ".z", point.z);
+  constexpr const char* kExpected = "metres, at most a hundred million";
+  requireWithin(kFarthest, key + ".x", point.x, kExpected);
+  requireWithin(kFarthest, key + ".y", point.y, kExpected);
+  requireWithin(kFarthest, key + ".z", point.z, kExpected);
   return {point.x, point.y, point.z};
 }
 

@@ -116,9 +116,9 @@ Window windowOf(const Grid& grid, const Corners& corners) {
 }
 
 void requireNumber(const Eigen::Vector2d& corner) {
-  constexpr double kFarthest = 1e6;
+  constexpr double kFarthest = 1e8;  // UTM counts up to 1e7
   if ((corner.array().abs() <= kFarthest).all()) return;
-  throw InvalidParameter("polygon", "corner " + toText(corner), "metres, at most a million");
+  throw InvalidParameter("polygon", "corner " + toText(corner), "metres, at most a hundred million");
 }
 
 /// Twice the area of a triangle; positive if its corners are counter-clockwise.

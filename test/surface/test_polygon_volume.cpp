@@ -253,7 +253,7 @@ TEST(PolygonVolume, RefusesWhatIsNoSimplePolygon) {
                                                  {{0, 0}, {2, 0}, {3, 0}, {2, 0}, {2, 2}},  // a spike
                                                  {{0, 0}, {1, 0}, {std::nan(""), 1}},
                                                  {{0, 0}, {1, 0}, {1, infinite}},
-                                                 {{0, 0}, {1, 0}, {1, 1e7}},
+                                                 {{0, 0}, {1, 0}, {1, 1e9}},
                                                  Corners(10001, Eigen::Vector2d(0, 0))}) {
     EXPECT_THROW(requireSimplePolygon(bad), InvalidParameter);
   }
