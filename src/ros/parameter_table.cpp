@@ -113,6 +113,9 @@ std::vector<ParameterRow> makeTable() {
       choice("publish_speed", &N::publish_speed, "the speed of the sand in ~height_field and its updates"),
       number("mesh_cells", &N::mesh_cells, kCells, 100.0, kMostMarkerCells,
              "most cells that ~mesh shows; a larger map is shown by blocks of cells"),
+      words("replay_calls", &N::replay_calls, "the name of a topic",
+            "topic on which a bag plays what a node has published on ~calls, to be done again at the same "
+            "frames; empty: none"),
       // tf keeps ten seconds.
       number("tf_delay", &N::tf_delay, kSeconds, 0.0, 5.0,
              "by how much the sand runs behind ROS time, so that tf has come"),

@@ -10,6 +10,7 @@
 namespace shallow_sand {
 namespace {
 
+constexpr const char* kName = "pour";
 constexpr std::uint32_t kMostWaiting = 1000;
 /// Between two lines of refusals [s].
 constexpr double kTellAgain = 5.0;
@@ -37,15 +38,23 @@ double coveredArea(const Region& disc, const Grid& grid) {
 
 }  // namespace
 
-PourTopic::PourTopic(ros::NodeHandle node, const SandBodies& bodies, Simulator& simulator)
-    : bodies_(bodies),
+PourTopic::PourTopic(ros::NodeHandle node, CallRecord& calls, const SandBodies& bodies, Simulator& simulator)
+    : calls_(calls),
+      bodies_(bodies),
       simulator_(simulator),
-      subscriber_(node.subscribe<PourSand>("pour", kMostWaiting,
-                                           [this](const PourSand::ConstPtr& message) { take(*message); })) {}
+      subscriber_(node.subscribe<PourSand>(kName, kMostWaiting,
+                                           [this](const PourSand::ConstPtr& message) { take(*message); })) {
+  calls.know<PourSand>(kName, [this](const PourSand& message) -> Change {
+    return [this, message] {
+      pour(message);
+      return std::string("poured");
+    };
+  });
+}
 
 void PourTopic::take(const PourSand& message) {
   try {
-    pour(message);
+    calls_.make(kName, message);
   } catch (const std::exception& problem) {
     const ros::WallTime now = ros::WallTime::now();
     if (!told_.isZero() && (now - told_).toSec() < kTellAgain) return;

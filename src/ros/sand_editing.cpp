@@ -72,27 +72,24 @@ Eigen::Vector3d positionOf(const geometry_msgs::Point& point) {
 
 }  // namespace
 
-SandEditing::SandEditing(const ros::NodeHandle& node, LoopCalls& loop, const SandBodies& bodies,
-                         Simulator& simulator)
+SandEditing::SandEditing(const ros::NodeHandle& node, LoopCalls& loop, CallRecord& calls,
+                         const SandBodies& bodies, Simulator& simulator)
     : bodies_(bodies), simulator_(simulator), services_(node, loop) {
-  services_.serve<EditSand>("edit_sand",
-                            [this](const EditSand::Request& request, EditSand::Response& response) {
-                              return edit(request, response);
-                            });
+  services_.serveChange<EditSand>("edit_sand", calls,
+                                  [this](const EditSand::Request& request) { return editing(request); });
   services_.start();
 }
 
-std::string SandEditing::edit(const EditSand::Request& request, EditSand::Response& response) {
-  Edit edit = editOf(request);
-  const Eigen::Vector3d center = positionOf(request.center.point);
-  services_.inLoop([&] {
-    const auto frame = poseOfNamedFrame(bodies_, "center.header.frame_id", request.center.header.frame_id);
-    edit.region.center = (frame * center).head<2>();
+std::function<std::string(EditSand::Response&)> SandEditing::editing(const EditSand::Request& request) {
+  return [this, edit = editOf(request), center = positionOf(request.center.point),
+          frame = request.center.header.frame_id](EditSand::Response& response) mutable {
+    const auto pose = poseOfNamedFrame(bodies_, "center.header.frame_id", frame);
+    edit.region.center = (pose * center).head<2>();
     response.volume = simulator_.edit(edit);
-  });
-  std::ostringstream done;
-  done << "the sand grew by " << response.volume << " m3";
-  return done.str();
+    std::ostringstream done;
+    done << "the sand grew by " << response.volume << " m3";
+    return done.str();
+  };
 }
 
 }  // namespace shallow_sand

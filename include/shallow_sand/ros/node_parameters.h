@@ -39,6 +39,7 @@ struct NodeParameters {
   double snapshot_period = 0.0;  ///< of simulated time after which the state is saved; 0: never [s]
   std::string snapshot_file = "latest.tif";  ///< within the folder
   bool restore = false;                      ///< go on from that file at the start, if it is there
+  std::string replay_calls;                  ///< topic of calls that a bag plays; empty: none
   std::string report;                        ///< file for the figures at the end; empty: none
   std::string picture;                       ///< file for a shaded relief at the end; empty: none
   std::string mesh_file;                     ///< .stl or .ply for the surface at the end; empty: none

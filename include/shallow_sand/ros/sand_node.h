@@ -13,6 +13,8 @@
 #include "shallow_sand/ros/body_handles.h"
 #include "shallow_sand/ros/body_markers.h"
 #include "shallow_sand/ros/body_services.h"
+#include "shallow_sand/ros/call_record.h"
+#include "shallow_sand/ros/call_replay.h"
 #include "shallow_sand/ros/contacts_publisher.h"
 #include "shallow_sand/ros/diagnostics.h"
 #include "shallow_sand/ros/frame_clock.h"
@@ -54,6 +56,8 @@ namespace shallow_sand {
 /// - publishes ~status (latched, once a second) and ~bodies (latched, when one has moved, at most at
 /// ~publish_rate);
 /// - publishes /diagnostics, once a second of the wall clock;
+/// - publishes on ~calls what changed the sand or its bodies by service, ~pour or handle, and does it again
+/// at the same frames when a bag plays it on ~replay_calls;
 /// - takes sand from and for ~pour, and lets bodies be dragged by interactive markers under ~body_handles;
 /// - at the end writes ~report, ~picture and ~mesh_file.
 class SandNode {
@@ -80,6 +84,7 @@ class SandNode {
   bool pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool step(Step::Request& request, Step::Response& response);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  std::string startAnew();
   /// Runs a paused sand on by whole frames. @throws InvalidParameter if it is not paused, or for a duration
   /// that is too long or none
   void stepBy(double duration);
@@ -106,6 +111,7 @@ class SandNode {
   SandBodies bodies_;
   std::vector<Robot> robots_;
   LoopCalls loop_calls_;
+  CallRecord calls_;
   SandStates states_;  ///< before what tells others of the sand
   BodyServices services_;
   SandEditing editing_;
@@ -118,6 +124,7 @@ class SandNode {
   SurfacePublisher surface_;
   ContactsPublisher contacts_;
   std::optional<ParticlesPublisher> particles_;  ///< if the scene has grains
+  CallReplay replay_;
   Diagnostics diagnostics_;
   Reconfiguration reconfiguration_;
   ros::Publisher status_;
