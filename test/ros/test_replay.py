@@ -231,33 +231,32 @@ class Replay(unittest.TestCase):
         edit, add = serialised(good), serialised(body)
         lengths = add.index(bytes([SolidPrimitive.BOX, 3, 0, 0, 0])) + 1
         malformed = [
-            ("set_sand", edit, "set_sand", "edit_sand"),
-            ("", b"", "service"),
-            ("edit_sand", edit[:self.chance.randrange(len(edit))], "edit_sand"),
+            ("set_sand", edit, "service: set_sand", "edit_sand"),
+            ("", b"", "service: ;"),
+            ("edit_sand", edit[:self.chance.randrange(len(edit))], "edit_sand is refused", "Overrun"),
             ("edit_sand", edit + bytes(3), "3 bytes too many"),
             ("edit_sand", bytes(70000), "70000 bytes"),
             # Thirty gigabytes of dimensions.
-            ("add_body", add[:lengths] + b"\xff\xff\xff\xff" + add[lengths + 4:], "add_body"),
-            ("edit_sand", serialised(EditSandRequest()), "radius"),
+            ("add_body", add[:lengths] + b"\xff\xff\xff\xff" + add[lengths + 4:], "add_body is refused", "bad_alloc"),
+            ("edit_sand", serialised(EditSandRequest()), "radius: "),
         ]
         with World({}) as world, RunningNode("careful", dict(SCENE, robot_description="", tf_delay=0.1, replay_calls="/bag")) as node:
             bag = rospy.Publisher("/bag", ServiceCall, queue_size=1000)
             wait_until(lambda: bag.get_num_connections() == 1, "a subscriber of /bag")
             start = node.status(lambda status: status.simulated_time > 0.0)
-            for name, request, *words in malformed:
-                for _ in range(5):
-                    bag.publish(ServiceCall(Header(stamp=start.header.stamp), name, request))
-                node.wait_for_error("/bag", "refused", *words)
-                # The log tells again after five seconds.
-                world.set_time(world.now + 5.1)
-            after = node.status(lambda status: status.simulated_time > start.simulated_time)
-            self.assertEqual((after.volume_poured, after.bodies), (0.0, []))
             late = node.status().header.stamp - rospy.Duration(1.0)
             for _ in range(5):
                 bag.publish(ServiceCall(Header(stamp=late), "edit_sand", edit))
             self.assertEqual(len(node.wait_for_error("/bag", "edit_sand", "too late", "~tf_delay")), 1)
             poured = node.status(lambda status: status.volume_poured > 0.0)
             self.assertAlmostEqual(poured.volume_poured, 5 * 0.1 * math.pi * 0.2**2, delta=0.01)
+            for name, request, *words in malformed:
+                call = ServiceCall(Header(stamp=start.header.stamp), name, request)
+                # The log tells again after five seconds.
+                world.set_time(world.now + 5.1)
+                wait_until(lambda: bag.publish(call) or node.error_lines("/bag", "refused", *words), words)
+            after = node.status(lambda status: status.simulated_time > poured.simulated_time)
+            self.assertEqual((after.volume_poured, after.bodies), (poured.volume_poured, []))
             # While it replays, others may call.
             self.assertTrue(service(node, "edit_sand", EditSand)(good).success)
             node.assert_well(self)

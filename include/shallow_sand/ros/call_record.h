@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "shallow_sand/ServiceCall.h"
-#include "shallow_sand/core/parameters.h"
+#include "shallow_sand/ros/bounded_read.h"
 #include "shallow_sand/ros/frame_clock.h"
 
 namespace shallow_sand {
@@ -31,7 +31,7 @@ class CallRecord {
   template <class Request>
   void know(const std::string& service, std::function<Change(const Request&)> prepare) {
     readers_[service] = [this, service, prepare = std::move(prepare)](const Bytes& bytes) -> Change {
-      const Request request = read<Request>(bytes);
+      const Request request = boundedRead<Request>(bytes);
       return [this, service, request, change = prepare(request)] { return make(service, request, change); };
     };
   }
@@ -61,15 +61,6 @@ class CallRecord {
     ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
     ros::serialization::serialize(stream, request);
     return bytes;
-  }
-  template <class Request>
-  static Request read(Bytes bytes) {
-    Request request;
-    ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-    ros::serialization::deserialize(stream, request);
-    if (stream.getLength() == 0) return request;
-    throw InvalidParameter("request", std::to_string(stream.getLength()) + " bytes too many",
-                           "the message of such a request");
   }
   void publish(const std::string& service, Bytes request) const;
 
