@@ -43,11 +43,11 @@ InteractiveMarkerControl controlWith(const visualization_msgs::Marker& look) {
 
 }  // namespace
 
-BodyHandles::BodyHandles(const ros::NodeHandle& node, const std::string& sand_frame, double frame_period,
+BodyHandles::BodyHandles(const ros::NodeHandle& node, const std::string& sand_frame, const FrameClock& clock,
                          const CallRecord& calls, const SandBodies& bodies)
     : queue_(*node.getCallbackQueue()),
       sand_frame_(sand_frame),
-      frame_period_(frame_period),
+      clock_(clock),
       calls_(calls),
       bodies_(bodies),
       server_(node.getNamespace() + "/body_handles") {}
@@ -115,7 +115,7 @@ void BodyHandles::drag(const InteractiveMarkerFeedback& feedback, Handle& handle
   const ros::Time now = ros::Time::now();
   const double since = handle.dragged.isZero() ? kLongestPeriod : (now - handle.dragged).toSec();
   // Time may have gone back.
-  const double period = std::clamp(since, std::min(frame_period_, kLongestPeriod), kLongestPeriod);
+  const double period = std::clamp(since, std::min(clock_.length(), kLongestPeriod), kLongestPeriod);
   // Just as long would be too fast by a rounding.
   const double least = 1.001 * bodies_.leastDuration(feedback.marker_name, pose);
   MoveBody::Request move;

@@ -10,7 +10,6 @@
 namespace shallow_sand {
 namespace {
 
-constexpr const char* kName = "pour";
 constexpr std::uint32_t kMostWaiting = 1000;
 /// Between two lines of refusals [s].
 constexpr double kTellAgain = 5.0;
@@ -64,33 +63,36 @@ void PourTopic::take(const PourSand& message) {
 }
 
 void PourTopic::pour(const PourSand& message) {
-  const Grid& grid = simulator_.grid();
   const geometry_msgs::Point& point = message.position.point;
   const Eigen::Vector3d position(point.x, point.y, point.z);
   if (!position.allFinite())
     throw InvalidParameter("position", toText(point.x, point.y, point.z), "finite numbers");
+  const Eigen::Vector3d in_sand = bodies_.poseOf(message.position.header.frame_id) * position;
+  simulator_.edit(editOf(in_sand, message.radius, message.volume, simulator_.grid()));
+}
+
+Edit PourTopic::editOf(const Eigen::Vector3d& in_sand, double radius, double volume, const Grid& grid) {
   const double longest = grid.spacing * static_cast<double>(std::max(grid.columns, grid.rows));
-  if (!(message.radius > 0.0 && message.radius <= longest)) {
-    throw InvalidParameter("radius", std::to_string(message.radius),
+  if (!(radius > 0.0 && radius <= longest)) {
+    throw InvalidParameter("radius", std::to_string(radius),
                            "metres above 0, at most the grid's " + std::to_string(longest));
   }
-  const Eigen::Vector3d in_sand = bodies_.poseOf(message.position.header.frame_id) * position;
   Edit edit;
   edit.region.center = in_sand.head<2>();
-  edit.region.radius = message.radius;
+  edit.region.radius = radius;
   const double area = coveredArea(edit.region, grid);
   if (!(area > 0.0)) {
     throw InvalidParameter("position", toText(in_sand.x(), in_sand.y(), in_sand.z()) + " in the sand's frame",
                            "a disc that covers cells of the grid");
   }
-  edit.operation = message.volume < 0.0 ? EditOperation::remove : EditOperation::add;
-  edit.value = std::abs(message.volume) / area;
+  edit.operation = volume < 0.0 ? EditOperation::remove : EditOperation::add;
+  edit.value = std::abs(volume) / area;
   constexpr double kDeepest = 1e6;
   if (!(edit.value <= kDeepest)) {
-    throw InvalidParameter("volume", std::to_string(message.volume),
+    throw InvalidParameter("volume", std::to_string(volume),
                            "cubic metres, no more than a million metres deep on the disc");
   }
-  simulator_.edit(edit);
+  return edit;
 }
 
 }  // namespace shallow_sand

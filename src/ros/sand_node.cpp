@@ -60,8 +60,9 @@ SandNode::SandNode(const ros::NodeHandle& node, const ros::NodeHandle& private_n
       setting_(private_node_, loop_calls_, bodies_, simulator_),
       queries_(private_node_, loop_calls_, bodies_, simulator_),
       pour_(private_node_, calls_, bodies_, simulator_),
+      running_pour_(parameters_, calls_, simulator_.grid()),
       body_markers_(private_node_, parameters_.scene.parameters.grid.frame),
-      body_handles_(private_node_, parameters_.scene.parameters.grid.frame, clock_.length(), calls_, bodies_),
+      body_handles_(private_node_, parameters_.scene.parameters.grid.frame, clock_, calls_, bodies_),
       height_field_(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
                     constantsOf(simulator_), parameters_.height_field_rate, parameters_.publish_speed),
       surface_(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
@@ -72,7 +73,8 @@ SandNode::SandNode(const ros::NodeHandle& node, const ros::NodeHandle& private_n
       diagnostics_(node_, private_node_, parameters_.scene.parameters.backend, simulator_,
                    silences(simulator_.grid())),
       reconfiguration_(private_node_, parameters_, simulator_, [this] { takeParameters(); }),
-      paused_(parameters_.paused) {
+      paused_(parameters_.paused),
+      rate_(parameters_.frame_rate) {
   if (simulator_.parameters().grains) {
     particles_.emplace(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
                        parameters_.publish_rate);
@@ -93,11 +95,10 @@ SandNode::SandNode(const ros::NodeHandle& node, const ros::NodeHandle& private_n
 }
 
 void SandNode::run(const std::function<bool()>& goesOn) {
-  ros::WallRate rate(parameters_.frame_rate);
   while (ros::ok() && goesOn()) {
     turn();
     diagnostics_.publishIfDue();
-    rate.sleep();
+    rate_.sleep();
   }
   writeResults();
 }
@@ -151,6 +152,7 @@ void SandNode::runDueFrames(const ros::Time& now) {
 
 void SandNode::runFrame() {
   replay_.carryOutDue();
+  running_pour_.pour(clock_.length());
   const ros::Time time = clock_.next();
   const double end = simulator_.time() + clock_.length();
   bodies_.update(time, clock_.length(), end);
@@ -247,6 +249,8 @@ std::string SandNode::startAnew() {
 }
 
 void SandNode::takeParameters() {
+  clock_.setRate(parameters_.frame_rate);
+  rate_ = ros::WallRate(parameters_.frame_rate);
   surface_.follower().setRate(parameters_.publish_rate);
   if (particles_) particles_->setRate(parameters_.publish_rate);
   contacts_.setRate(parameters_.publish_rate);

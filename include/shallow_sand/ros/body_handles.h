@@ -17,9 +17,8 @@ namespace shallow_sand {
 class BodyHandles {
  public:
   /// @param node below which the topics lie; what comes is handled from its callback queue
-  /// @param frame_period of the sand [s]
-  /// @param calls that know ~move_body, of bodies. Both must outlive this
-  BodyHandles(const ros::NodeHandle& node, const std::string& sand_frame, double frame_period,
+  /// @param calls that know ~move_body, of bodies. They and the clock must outlive this
+  BodyHandles(const ros::NodeHandle& node, const std::string& sand_frame, const FrameClock& clock,
               const CallRecord& calls, const SandBodies& bodies);
   /// Brings markers to the bodies, save those that are being dragged.
   void update(const std::vector<ShownBody>& shown);
@@ -36,7 +35,7 @@ class BodyHandles {
 
   ros::CallbackQueueInterface& queue_;
   std::string sand_frame_;
-  double frame_period_;
+  const FrameClock& clock_;
   const CallRecord& calls_;
   const SandBodies& bodies_;
   interactive_markers::InteractiveMarkerServer server_;

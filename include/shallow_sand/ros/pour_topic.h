@@ -13,6 +13,12 @@ namespace shallow_sand {
 /// line of the log.
 class PourTopic {
  public:
+  static constexpr const char* kName = "pour";  ///< of the topic, and in CallRecord
+
+  /// What brings a volume [m³] to a disc. @param in_sand its centre [m] @param radius [m]
+  /// @throws InvalidParameter
+  static Edit editOf(const Eigen::Vector3d& in_sand, double radius, double volume, const Grid& grid);
+
   /// Messages are taken from the global queue, all that have come, up to a thousand between two frames.
   /// @param node whose name the topic begins with. All others must outlive this
   PourTopic(ros::NodeHandle node, CallRecord& calls, const SandBodies& bodies, Simulator& simulator);

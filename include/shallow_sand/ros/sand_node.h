@@ -25,6 +25,7 @@
 #include "shallow_sand/ros/pour_topic.h"
 #include "shallow_sand/ros/reconfiguration.h"
 #include "shallow_sand/ros/robot.h"
+#include "shallow_sand/ros/running_pour.h"
 #include "shallow_sand/ros/sand_bodies.h"
 #include "shallow_sand/ros/sand_editing.h"
 #include "shallow_sand/ros/sand_queries.h"
@@ -95,7 +96,7 @@ class SandNode {
   void requestFields();
   /// Gives those that were requested to those who wait for them.
   void handOverFields();
-  /// ~publish_rate, ~height_field_rate and ~max_body_speed are others.
+  /// Some of those that dynamic_reconfigure changes are others.
   void takeParameters();
   void showBodies();
   void publishStatus();
@@ -118,6 +119,7 @@ class SandNode {
   SandSetting setting_;
   SandQueries queries_;
   PourTopic pour_;
+  RunningPour running_pour_;
   BodyMarkers body_markers_;
   BodyHandles body_handles_;
   HeightFieldPublisher height_field_;
@@ -132,6 +134,7 @@ class SandNode {
   ros::ServiceServer step_;
   ros::ServiceServer reset_;
   bool paused_;
+  ros::WallRate rate_;                  ///< of the loop
   std::optional<ros::Time> requested_;  ///< time of the fields that are under way from the simulator
   ros::Time last_now_;                  ///< ROS time
   ros::WallTime last_status_;
