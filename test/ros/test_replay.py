@@ -147,7 +147,8 @@ class Replay(unittest.TestCase):
 
     def record(self, bag, name):
         """Returns the time of the sand at the end and its state; None if time was left out."""
-        with World(FRAMES) as world, RunningNode(name, self.parameters(tf_delay=LAG)) as node:
+        pour = dict(pour_rate=0.002, pour_x=0.3, pour_y=0.7)
+        with World(FRAMES) as world, RunningNode(name, self.parameters(tf_delay=LAG, **pour)) as node:
             told = Told(node)
             node.body("blade", lambda body: body.state == BodyStatus.MOVING)
             everything = Everything(node, self.chance)
