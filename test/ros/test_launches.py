@@ -100,10 +100,11 @@ class Launches(unittest.TestCase):
         for topic in ("/tf", "/sand_node/calls", "/sand_node/status", "/sand_node/height_field"):
             self.assertIn(topic, topics)
         self.assertGreater(topics["/tf"].message_count, 10)
+        self.addCleanup(rospy.delete_param, "/use_sim_time")
         with Launched("replay", bag=bag, scene=scene.name) as replayed:
             again = replayed.status("/sand_node/status", lambda status: digs(status) and status.volume_poured > 0.0)
-            self.assertEqual(again.volume_poured, poured)
-        rospy.delete_param("/use_sim_time")
+            # That bits are the same where nothing is held up is a matter of test_replay.py.
+            self.assertAlmostEqual(again.volume_poured, poured, delta=1e-6)
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ import xmlrpc.client
 import rosgraph
 import rospy
 import rostest
+from dynamic_reconfigure.client import Client
 from geometry_msgs.msg import Point, PointStamped, Pose, PoseStamped, Quaternion, Vector3
 from rosgraph_msgs.msg import Clock
 from sand_test import SCENE, Place, RunningNode, World, link, robot, service, wait_until
@@ -25,7 +26,7 @@ from std_srvs.srv import SetBool, Trigger
 
 FRAME = 0.02  # s, of the sand
 FRAMES = {"blade": lambda now: Place(0.5 + 0.3 * math.sin(now), 0.5, 0.1), "hand": lambda now: Place(0.5, 0.5 + 0.2 * math.cos(now), 0.3)}
-LAG, DELAY = 0.4, 4.0  # s, of the sand behind the clock, and behind that of a bag
+LAG, DELAY = 0.4, 3.0  # s, of the sand behind the clock, and behind that of a bag
 
 
 def at(x, y, z, frame):
@@ -147,17 +148,19 @@ class Replay(unittest.TestCase):
 
     def record(self, bag, name):
         """Returns the time of the sand at the end and its state; None if time was left out."""
-        pour = dict(pour_rate=0.002, pour_x=0.3, pour_y=0.7)
-        with World(FRAMES) as world, RunningNode(name, self.parameters(tf_delay=LAG, **pour)) as node:
+        with World(FRAMES) as world, RunningNode(name, self.parameters(tf_delay=LAG)) as node:
             told = Told(node)
             node.body("blade", lambda body: body.state == BodyStatus.MOVING)
             everything = Everything(node, self.chance)
+            reconfigure = Client(node.name + "/reconfigure", timeout=10.0)
             with Recorder(bag, node, world):
                 # The bag has tf from before ~reset on, in the time of the sand.
                 begin = world.now
                 wait_until(lambda: world.now > begin + 2.0 * LAG, "time goes on")
                 self.assertTrue(service(node, "reset", Trigger)().success)
-                end = time.monotonic() + 3.0
+                # Not before: volumes of the ledger keep the roundings of what was poured before ~reset.
+                reconfigure.update_configuration({"pour_rate": 0.002, "pour_x": 0.3, "pour_y": 0.7})
+                end = time.monotonic() + 2.0
                 while time.monotonic() < end:
                     everything.do_one()
                     rospy.rostime.wallsleep(self.chance.uniform(0.0, 0.1))
@@ -169,7 +172,7 @@ class Replay(unittest.TestCase):
             return (status.header.stamp, state) if told.time_given_up() == 0.0 else None
 
     def play(self, bag, recorded, name, stamp):
-        """The state at a time of the sand; None if time was left out."""
+        """The state at a time of the sand; None if time was left out, or calls came too late."""
         clock = rospy.Publisher("/clock", Clock, queue_size=100)
         times = []
         rospy.Subscriber("/clock", Clock, lambda message: times.append(message.clock))
@@ -177,7 +180,7 @@ class Replay(unittest.TestCase):
             told = Told(node)
             # The link is read before tf comes.
             wait_until(lambda: clock.publish(Clock(rospy.Time(50))) or told.messages and told.messages[-1].bodies, "the link")
-            subprocess.run(["rosbag", "play", "--clock", "-r", "2", bag], stdout=subprocess.DEVNULL, check=True, timeout=30)
+            subprocess.run(["rosbag", "play", "--clock", "--queue", "1000", "-r", "2", bag], stdout=subprocess.DEVNULL, check=True, timeout=30)
             now = times[-1]
             while now < stamp + rospy.Duration(DELAY + 0.25 * FRAME):
                 now = min(now + rospy.Duration(FRAME), stamp + rospy.Duration(DELAY + 0.25 * FRAME))
@@ -185,13 +188,15 @@ class Replay(unittest.TestCase):
                 rospy.rostime.wallsleep(0.5 * FRAME)
             status = node.status(lambda status: status.header.stamp >= stamp)
             self.assertEqual(status.header.stamp, stamp)
-            self.assertEqual(node.error_lines("/calls"), [])
             state = self.saved(node, name + ".tif")
             clock.unregister()
-            return state if told.time_given_up() == 0.0 else None
+            if told.time_given_up() > 0.0 or node.error_lines("/calls", "too late"):
+                return None
+            self.assertEqual(node.error_lines("/calls"), [])
+            return state
 
     def test_the_same_bits_from_a_bag(self):
-        # On a machine that other things hold up time may be left out, which is told; then there is nothing to compare.
+        # On a machine that other things hold up time may be left out, or calls come late, which is told; then there is nothing to compare.
         for attempt in range(3):
             bag = os.path.join(self.folder.name, f"{attempt}.bag")
             recorded = self.record(bag, f"recorded_{attempt}")
@@ -203,7 +208,7 @@ class Replay(unittest.TestCase):
                 continue
             self.assertEqual(state, again)
             return
-        self.fail("time was left out again and again")
+        self.fail("the machine was held up again and again")
 
     def test_calls_take_effect_between_the_frames_that_they_name(self):
         with World({}) as world, RunningNode("punctual", dict(SCENE, robot_description="", tf_delay=2.0, replay_calls="/bag")) as node:
