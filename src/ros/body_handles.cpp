@@ -7,6 +7,7 @@
 #include <boost/make_shared.hpp>
 #include <cmath>
 
+#include "shallow_sand/MoveBody.h"
 #include "shallow_sand/ros/poses.h"
 #include "shallow_sand/ros/queued_call.h"
 
@@ -42,11 +43,12 @@ InteractiveMarkerControl controlWith(const visualization_msgs::Marker& look) {
 
 }  // namespace
 
-BodyHandles::BodyHandles(const ros::NodeHandle& node, const std::string& sand_frame, double frame_period,
-                         SandBodies& bodies)
+BodyHandles::BodyHandles(const ros::NodeHandle& node, const std::string& sand_frame, const FrameClock& clock,
+                         const CallRecord& calls, const SandBodies& bodies)
     : queue_(*node.getCallbackQueue()),
       sand_frame_(sand_frame),
-      frame_period_(frame_period),
+      clock_(clock),
+      calls_(calls),
       bodies_(bodies),
       server_(node.getNamespace() + "/body_handles") {}
 
@@ -113,10 +115,14 @@ void BodyHandles::drag(const InteractiveMarkerFeedback& feedback, Handle& handle
   const ros::Time now = ros::Time::now();
   const double since = handle.dragged.isZero() ? kLongestPeriod : (now - handle.dragged).toSec();
   // Time may have gone back.
-  const double period = std::clamp(since, std::min(frame_period_, kLongestPeriod), kLongestPeriod);
+  const double period = std::clamp(since, std::min(clock_.length(), kLongestPeriod), kLongestPeriod);
   // Just as long would be too fast by a rounding.
   const double least = 1.001 * bodies_.leastDuration(feedback.marker_name, pose);
-  bodies_.move(feedback.marker_name, pose, std::max(period, least));
+  MoveBody::Request move;
+  move.name = feedback.marker_name;
+  move.pose.pose = tf2::toMsg(pose);
+  move.duration = std::max(period, least);
+  calls_.make("move_body", move);
   handle.dragged = now;
 }
 

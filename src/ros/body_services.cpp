@@ -31,84 +31,91 @@ BodyGeometry geometryOf(const AddBody::Request& request, double sand_spacing) {
   return makeBodyGeometry(requestedMesh(request), sand_spacing, options);
 }
 
+/// @throws InvalidParameter if more than one thing is to move the body
+void requireOneMover(const AddBody::Request& request) {
+  if (request.follow && request.pose.header.frame_id.empty())
+    throw InvalidParameter("pose.header.frame_id", "empty", "the tf frame to follow");
+  if (request.follow && request.handle)
+    throw InvalidParameter("handle", "given beside follow", "one of the two: tf moves what follows a frame");
+  if (!request.pose_topic.empty() && (request.follow || request.handle))
+    throw InvalidParameter("pose_topic", "given beside follow or handle", "one of them to move the body");
+}
+
 }  // namespace
 
-BodyServices::BodyServices(const ros::NodeHandle& node, LoopCalls& loop, const GridParameters& grid,
-                           SandBodies& bodies, TransformReader& transforms)
+BodyServices::BodyServices(const ros::NodeHandle& node, LoopCalls& loop, CallRecord& calls,
+                           const GridParameters& grid, SandBodies& bodies, TransformReader& transforms)
     : sand_spacing_(grid.spacing),
       bodies_(bodies),
       pose_topics_(node, grid.frame, transforms),
       services_(node, loop) {
   // The log tells of what was done, too: it happens seldom.
-  const auto told = [](const char* service, const std::string& name, const std::string& message) {
-    ROS_INFO_STREAM(service << " " << name << ": " << message);
-    return message;
+  const auto told = [](const char* service, const std::string& name, const Change& change) {
+    return [=](const auto&) {
+      const std::string message = change();
+      ROS_INFO_STREAM(service << " " << name << ": " << message);
+      return message;
+    };
   };
-  services_.serve<AddBody>("add_body", [=](const AddBody::Request& request, AddBody::Response&) {
-    return told("~add_body", request.name, add(request));
+  services_.serveChange<AddBody>(
+      "add_body", calls,
+      [=](const AddBody::Request& request) { return told("~add_body", request.name, adding(request)); },
+      [this](const AddBody::Request& request) { checkAdding(request); });
+  services_.serveChange<RemoveBody>("remove_body", calls, [=](const RemoveBody::Request& request) {
+    return told("~remove_body", request.name, removing(request));
   });
-  services_.serve<RemoveBody>("remove_body", [=](const RemoveBody::Request& request, RemoveBody::Response&) {
-    return told("~remove_body", request.name, remove(request));
-  });
-  services_.serve<MoveBody>("move_body", [=](const MoveBody::Request& request, MoveBody::Response&) {
-    return told("~move_body", request.name, move(request));
+  services_.serveChange<MoveBody>("move_body", calls, [=](const MoveBody::Request& request) {
+    return told("~move_body", request.name, moving(request));
   });
   services_.start();
 }
 
-std::string BodyServices::add(const AddBody::Request& request) {
+void BodyServices::checkAdding(const AddBody::Request& request) const {
+  bodies_.requireFree(request.name);
+  if (!request.follow && request.pose_topic.empty()) bodies_.poseOf(request.pose.header.frame_id);
+}
+
+Change BodyServices::adding(const AddBody::Request& request) {
   requireName("name", request.name);
-  const std::string& frame = request.pose.header.frame_id;
+  if (request.follow) requireName("pose.header.frame_id", request.pose.header.frame_id);
   const Eigen::Isometry3d pose = rigid(request.pose.pose);
-  if (request.follow && frame.empty()) {
-    throw InvalidParameter("pose.header.frame_id", "empty", "the tf frame to follow");
-  }
-  if (request.follow) requireName("pose.header.frame_id", frame);
-  if (request.follow && request.handle) {
-    throw InvalidParameter("handle", "given beside follow", "one of the two: tf moves what follows a frame");
-  }
-  const bool has_topic = !request.pose_topic.empty();
-  if (has_topic && (request.follow || request.handle)) {
-    throw InvalidParameter("pose_topic", "given beside follow or handle", "one of them to move the body");
-  }
-  services_.inLoop([&] {
-    bodies_.requireFree(request.name);
-    if (!request.follow && !has_topic) bodies_.poseOf(frame);
-  });
+  requireOneMover(request);
   const ros::WallTime begin = ros::WallTime::now();
   const BodyGeometry geometry = geometryOf(request, sand_spacing_);
-  const double duration = (ros::WallTime::now() - begin).toSec();
-  const BodyAppearance appearance{lookOf(request), request.handle != 0};
-  services_.inLoop([&] {
-    if (has_topic) {
-      const TfFrame own{pose_topics_.follow(request.name, request.pose_topic)};
-      bodies_.addFollowing(request.name, "", own, geometry.field, appearance);
-    } else if (request.follow) {
-      bodies_.addFollowing(request.name, "", {frame, pose}, geometry.field, appearance);
-    } else {
-      bodies_.addPlaced(request.name, bodies_.poseOf(frame) * pose, geometry.field, appearance);
-    }
-  });
   std::ostringstream done;
-  done << (geometry.from_cache ? "taken from the cache" : "sampled") << " in " << duration << " s";
+  done << (geometry.from_cache ? "taken from the cache" : "sampled") << " in "
+       << (ros::WallTime::now() - begin).toSec() << " s";
   for (const std::string& note : geometry.notes) done << "; " << note;
-  return done.str();
+  const BodyAppearance appearance{lookOf(request), request.handle != 0};
+  return [this, request, pose, field = geometry.field, appearance, message = done.str()] {
+    const std::string& frame = request.pose.header.frame_id;
+    if (!request.pose_topic.empty()) {
+      bodies_.requireFree(request.name);
+      const TfFrame own{pose_topics_.follow(request.name, request.pose_topic)};
+      bodies_.addFollowing(request.name, "", own, field, appearance);
+    } else if (request.follow) {
+      bodies_.addFollowing(request.name, "", {frame, pose}, field, appearance);
+    } else {
+      bodies_.addPlaced(request.name, bodies_.poseOf(frame) * pose, field, appearance);
+    }
+    return message;
+  };
 }
 
-std::string BodyServices::remove(const RemoveBody::Request& request) {
-  services_.inLoop([&] {
+Change BodyServices::removing(const RemoveBody::Request& request) {
+  return [this, request] {
     bodies_.remove(request.name);
     pose_topics_.forget(request.name);
-  });
-  return "removed";
+    return std::string("removed");
+  };
 }
 
-std::string BodyServices::move(const MoveBody::Request& request) {
-  const Eigen::Isometry3d pose = rigid(request.pose.pose);
-  services_.inLoop([&] {
+Change BodyServices::moving(const MoveBody::Request& request) {
+  return [this, request, pose = rigid(request.pose.pose)] {
     bodies_.move(request.name, bodies_.poseOf(request.pose.header.frame_id) * pose, request.duration);
-  });
-  return request.duration > 0.0 ? "under way for " + std::to_string(request.duration) + " s" : "put there";
+    return request.duration > 0.0 ? "under way for " + std::to_string(request.duration) + " s"
+                                  : std::string("put there");
+  };
 }
 
 }  // namespace shallow_sand

@@ -9,11 +9,30 @@ namespace {
 /// [s]
 constexpr double kLongestFrame = 0.1;
 
+/// Of a frame [ns].
+std::int64_t frameOf(double rate) {
+  const double parts = std::max(1.0, std::ceil(1.0 / (rate * kLongestFrame) - 1e-9));
+  return std::llround(1e9 / (rate * parts));
+}
+
 }  // namespace
 
-FrameClock::FrameClock(double rate) {
-  const double parts = std::max(1.0, std::ceil(1.0 / (rate * kLongestFrame) - 1e-9));
-  nanoseconds_ = std::llround(1e9 / (rate * parts));
+FrameClock::FrameClock(double rate) : nanoseconds_(frameOf(rate)) {}
+
+void FrameClock::setRate(double rate) {
+  const std::int64_t nanoseconds = frameOf(rate);
+  if (nanoseconds == nanoseconds_) return;
+  const double given_up = givenUp();
+  const std::int64_t before = nanoseconds_;
+  nanoseconds_ = nanoseconds;
+  lost_ = 0;
+  given_up_before_ = given_up;
+  if (!taken_) return;
+  const auto firstAtOrAfter = [&](std::int64_t index) { return (index * before - 1) / nanoseconds + 1; };
+  const std::int64_t end = *taken_ * before;
+  taken_ = firstAtOrAfter(*taken_);
+  asked_ = firstAtOrAfter(asked_);
+  given_up_before_ += 1e-9 * static_cast<double>(*taken_ * nanoseconds - end);
 }
 
 double FrameClock::length() const {

@@ -16,6 +16,8 @@ struct Unit {
 constexpr Unit kHertz{"hertz", "Hz"};
 constexpr Unit kSeconds{"seconds", "s"};
 constexpr Unit kMetresASecond{"metres a second", "m/s"};
+constexpr Unit kMetres{"metres", "m"};
+constexpr Unit kCubicMetresASecond{"cubic metres a second", "m³/s"};
 constexpr Unit kCells{"cells", ""};
 
 const char* const kPatterns = "a list of patterns of link names, such as ['wheel_*']";
@@ -100,8 +102,8 @@ std::vector<ParameterRow> makeTable() {
             "of those snapshots, within state_folder"),
       choice("restore", &N::restore, "go on from snapshot_file at the start, if it is there"),
       // The bounds keep periods within what ros::Duration can hold.
-      number("frame_rate", &N::frame_rate, kHertz, 0.01, 1e4,
-             "how often poses are taken and the sand runs on"),
+      atRunTime(number("frame_rate", &N::frame_rate, kHertz, 0.01, 1e4,
+                       "how often poses are taken and the sand runs on")),
       choice("paused", &N::paused,
              "whether the sand rests at the start, until ~pause or ~step tell otherwise"),
       atRunTime(
@@ -113,6 +115,9 @@ std::vector<ParameterRow> makeTable() {
       choice("publish_speed", &N::publish_speed, "the speed of the sand in ~height_field and its updates"),
       number("mesh_cells", &N::mesh_cells, kCells, 100.0, kMostMarkerCells,
              "most cells that ~mesh shows; a larger map is shown by blocks of cells"),
+      words("replay_calls", &N::replay_calls, "the name of a topic",
+            "topic on which a bag plays what a node has published on ~calls, to be done again at the same "
+            "frames; empty: none"),
       // tf keeps ten seconds.
       number("tf_delay", &N::tf_delay, kSeconds, 0.0, 5.0,
              "by how much the sand runs behind ROS time, so that tf has come"),
@@ -120,6 +125,12 @@ std::vector<ParameterRow> makeTable() {
              "a link whose newest pose is older is reported as stale"),
       atRunTime(number("max_body_speed", &N::max_body_speed, kMetresASecond, 1e-3, 1e6,
                        "of the farthest point of a body; a pose that moves faster has jumped")),
+      atRunTime(number("pour_rate", &N::pour_rate, kCubicMetresASecond, -1e6, 1e6,
+                       "of sand that is poured on a disc as long as the sand runs; below 0: taken away")),
+      atRunTime(number("pour_x", &N::pour_x, kMetres, -1e6, 1e6, "middle of that disc in the sand's frame")),
+      atRunTime(number("pour_y", &N::pour_y, kMetres, -1e6, 1e6, "middle of that disc in the sand's frame")),
+      atRunTime(number("pour_radius", &N::pour_radius, kMetres, 1e-3, 1e6,
+                       "of that disc, at most the grid's longer side")),
   };
 }
 

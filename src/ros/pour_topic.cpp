@@ -14,15 +14,23 @@ constexpr double kTellAgain = 5.0;
 
 }  // namespace
 
-PourTopic::PourTopic(ros::NodeHandle node, const SandBodies& bodies, Simulator& simulator)
-    : bodies_(bodies),
+PourTopic::PourTopic(ros::NodeHandle node, CallRecord& calls, const SandBodies& bodies, Simulator& simulator)
+    : calls_(calls),
+      bodies_(bodies),
       simulator_(simulator),
-      subscriber_(node.subscribe<PourSand>("pour", kMostWaiting,
-                                           [this](const PourSand::ConstPtr& message) { take(*message); })) {}
+      subscriber_(node.subscribe<PourSand>(kName, kMostWaiting,
+                                           [this](const PourSand::ConstPtr& message) { take(*message); })) {
+  calls.know<PourSand>(kName, [this](const PourSand& message) -> Change {
+    return [this, message] {
+      pour(message);
+      return std::string("poured");
+    };
+  });
+}
 
 void PourTopic::take(const PourSand& message) {
   try {
-    pour(message);
+    calls_.make(kName, message);
   } catch (const std::exception& problem) {
     const ros::WallTime now = ros::WallTime::now();
     if (!told_.isZero() && (now - told_).toSec() < kTellAgain) return;

@@ -12,6 +12,7 @@
 
 #include "shallow_sand/ros/parameter_table.h"
 #include "shallow_sand/ros/queued_call.h"
+#include "shallow_sand/ros/running_pour.h"
 
 namespace shallow_sand {
 namespace {
@@ -68,6 +69,11 @@ SandConfig startingConfig(const NodeParameters& parameters, const SimulatorParam
   config.gravity_z = sand.gravity.z();
   config.publish_rate = parameters.publish_rate;
   config.height_field_rate = parameters.height_field_rate;
+  config.frame_rate = parameters.frame_rate;
+  config.pour_rate = parameters.pour_rate;
+  config.pour_x = parameters.pour_x;
+  config.pour_y = parameters.pour_y;
+  config.pour_radius = parameters.pour_radius;
   config.max_body_speed = parameters.max_body_speed;
   return config;
 }
@@ -122,15 +128,28 @@ void Reconfiguration::apply(const SandConfig& wanted) {
   const Material material = materialOf(wanted, taken_, now.material);
   // All that can be refused, before anything changes.
   validateGravity(gravity);
-  parameterRow("publish_rate").require(wanted.publish_rate);
-  parameterRow("height_field_rate").require(wanted.height_field_rate);
-  parameterRow("max_body_speed").require(wanted.max_body_speed);
+  for (const auto& [name, value] : {std::pair{"publish_rate", wanted.publish_rate},
+                                    {"height_field_rate", wanted.height_field_rate},
+                                    {"max_body_speed", wanted.max_body_speed},
+                                    {"frame_rate", wanted.frame_rate},
+                                    {"pour_rate", wanted.pour_rate},
+                                    {"pour_x", wanted.pour_x},
+                                    {"pour_y", wanted.pour_y},
+                                    {"pour_radius", wanted.pour_radius}})
+    parameterRow(name).require(value);
+  RunningPour::require(wanted.pour_rate, {wanted.pour_x, wanted.pour_y}, wanted.pour_radius,
+                       simulator_.grid());
   // Sand that is told what it is already would wake up for nothing.
   if (!(material == now.material)) simulator_.setMaterial(material);
   if (gravity != now.gravity) simulator_.setGravity(gravity);
   parameters_.publish_rate = wanted.publish_rate;
   parameters_.height_field_rate = wanted.height_field_rate;
   parameters_.max_body_speed = wanted.max_body_speed;
+  parameters_.frame_rate = wanted.frame_rate;
+  parameters_.pour_rate = wanted.pour_rate;
+  parameters_.pour_x = wanted.pour_x;
+  parameters_.pour_y = wanted.pour_y;
+  parameters_.pour_radius = wanted.pour_radius;
   changed_();
 }
 

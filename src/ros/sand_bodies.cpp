@@ -36,12 +36,13 @@ bool mayTell(ros::WallTime& told, double period) {
 
 }  // namespace
 
-SandBodies::SandBodies(const NodeParameters& parameters, const TransformReader& transforms,
-                       Simulator& simulator)
+SandBodies::SandBodies(const NodeParameters& parameters, const FrameClock& clock,
+                       const TransformReader& transforms, Simulator& simulator)
     : sand_frame_(parameters.scene.parameters.grid.frame),
       tf_delay_(parameters.tf_delay),
       tf_timeout_(parameters.tf_timeout),
       max_body_speed_(parameters.max_body_speed),
+      clock_(clock),
       transforms_(transforms),
       simulator_(simulator) {
   for (const SceneBody& scene_body : parameters.scene.bodies) {
@@ -150,7 +151,9 @@ double SandBodies::leastDuration(const std::string& name, const Eigen::Isometry3
 
 Eigen::Isometry3d SandBodies::poseOf(const std::string& frame) const {
   if (frame.empty() || frame == sand_frame_) return Eigen::Isometry3d::Identity();
-  return lookUp(TfFrame{frame, Eigen::Isometry3d::Identity()}, ros::Time(0));
+  const ros::Time now = clock_.hasStarted() ? clock_.end() : ros::Time();
+  const bool is_known = transforms_.buffer().canTransform(sand_frame_, frame, now);
+  return lookUp(TfFrame{frame, Eigen::Isometry3d::Identity()}, is_known ? now : ros::Time());
 }
 
 Eigen::Isometry3d SandBodies::lookUp(const TfFrame& frame, const ros::Time& time) const {

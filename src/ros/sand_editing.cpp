@@ -7,24 +7,22 @@
 
 namespace shallow_sand {
 
-SandEditing::SandEditing(const ros::NodeHandle& node, LoopCalls& loop, const SandBodies& bodies,
-                         Simulator& simulator)
+SandEditing::SandEditing(const ros::NodeHandle& node, LoopCalls& loop, CallRecord& calls,
+                         const SandBodies& bodies, Simulator& simulator)
     : bodies_(bodies), simulator_(simulator), services_(node, loop) {
-  services_.serve<EditSand>("edit_sand",
-                            [this](const EditSand::Request& request, EditSand::Response& response) {
-                              return edit(request, response);
-                            });
+  services_.serveChange<EditSand>("edit_sand", calls,
+                                  [this](const EditSand::Request& request) { return editing(request); });
   services_.start();
 }
 
-std::string SandEditing::edit(const EditSand::Request& request, EditSand::Response& response) {
-  services_.inLoop([&] {
+std::function<std::string(EditSand::Response&)> SandEditing::editing(const EditSand::Request& request) {
+  return [this, request](EditSand::Response& response) {
     const auto frame = poseOfNamedFrame(bodies_, "center.header.frame_id", request.center.header.frame_id);
     response.volume = simulator_.edit(requestedEdit(request, frame));
-  });
-  std::ostringstream done;
-  done << "the sand grew by " << response.volume << " m3";
-  return done.str();
+    std::ostringstream done;
+    done << "the sand grew by " << response.volume << " m3";
+    return done.str();
+  };
 }
 
 }  // namespace shallow_sand

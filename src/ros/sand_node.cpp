@@ -52,25 +52,29 @@ SandNode::SandNode(const ros::NodeHandle& node, const ros::NodeHandle& private_n
       parameters_(readNodeParameters(private_node_)),
       simulator_(build(parameters_.scene)),
       clock_(parameters_.frame_rate),
-      bodies_(parameters_, transforms_, simulator_),
+      bodies_(parameters_, clock_, transforms_, simulator_),
+      calls_(private_node_, clock_, parameters_.scene.parameters.grid.frame),
       states_(private_node_, loop_calls_, parameters_, bodies_, simulator_),
-      services_(private_node_, loop_calls_, parameters_.scene.parameters.grid, bodies_, transforms_),
-      editing_(private_node_, loop_calls_, bodies_, simulator_),
+      services_(private_node_, loop_calls_, calls_, parameters_.scene.parameters.grid, bodies_, transforms_),
+      editing_(private_node_, loop_calls_, calls_, bodies_, simulator_),
       setting_(private_node_, loop_calls_, bodies_, simulator_),
       queries_(private_node_, loop_calls_, bodies_, simulator_),
-      pour_(private_node_, bodies_, simulator_),
+      pour_(private_node_, calls_, bodies_, simulator_),
+      running_pour_(parameters_, calls_, simulator_.grid()),
       body_markers_(private_node_, parameters_.scene.parameters.grid.frame),
-      body_handles_(private_node_, parameters_.scene.parameters.grid.frame, clock_.length(), bodies_),
+      body_handles_(private_node_, parameters_.scene.parameters.grid.frame, clock_, calls_, bodies_),
       height_field_(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
                     constantsOf(simulator_), parameters_.height_field_rate, parameters_.publish_speed),
       surface_(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
                parameters_.publish_rate, static_cast<std::size_t>(parameters_.mesh_cells)),
       contacts_(private_node_, parameters_.scene.depth, parameters_.scene.parameters.grid.frame,
                 parameters_.publish_rate),
+      replay_(private_node_, parameters_.replay_calls, calls_, clock_),
       diagnostics_(node_, private_node_, parameters_.scene.parameters.backend, simulator_,
                    silences(simulator_.grid())),
       reconfiguration_(private_node_, parameters_, simulator_, [this] { takeParameters(); }),
-      paused_(parameters_.paused) {
+      paused_(parameters_.paused),
+      rate_(parameters_.frame_rate) {
   if (simulator_.parameters().grains) {
     particles_.emplace(private_node_, simulator_.grid(), parameters_.scene.parameters.grid.frame,
                        parameters_.publish_rate);
@@ -81,6 +85,8 @@ SandNode::SandNode(const ros::NodeHandle& node, const ros::NodeHandle& private_n
   status_ = private_node_.advertise<Status>("status", 1, true);
   pause_ = private_node_.advertiseService("pause", &SandNode::pause, this);
   step_ = private_node_.advertiseService("step", &SandNode::step, this);
+  calls_.know<std_srvs::Trigger::Request>(
+      "reset", [this](const auto&) -> Change { return [this] { return startAnew(); }; });
   reset_ = private_node_.advertiseService("reset", &SandNode::reset, this);
   ROS_INFO_STREAM(simulator_.backendNotice());
   ROS_INFO_STREAM(simulator_.grid().columns << " x " << simulator_.grid().rows << " cells of "
@@ -89,11 +95,10 @@ SandNode::SandNode(const ros::NodeHandle& node, const ros::NodeHandle& private_n
 }
 
 void SandNode::run(const std::function<bool()>& goesOn) {
-  ros::WallRate rate(parameters_.frame_rate);
   while (ros::ok() && goesOn()) {
     turn();
     diagnostics_.publishIfDue();
-    rate.sleep();
+    rate_.sleep();
   }
   writeResults();
 }
@@ -101,6 +106,7 @@ void SandNode::run(const std::function<bool()>& goesOn) {
 void SandNode::turn() {
   queue_.callAvailable();
   loop_calls_.runPending();
+  replay_.carryOutDue();
   states_.saveIfDue();
   for (Robot& robot : robots_) robot.update(node_, bodies_);
   const ros::Time now = ros::Time::now();
@@ -123,6 +129,7 @@ void SandNode::restart(const ros::Duration& duration) {
   ROS_WARN_STREAM("time went back by " << duration.toSec() << " s; the sand goes on from here, and bodies "
                                        << "are put at their next poses");
   clock_.restart();
+  replay_.restart(ros::Time::now());
   transforms_.restart();
   bodies_.restartClock();
 }
@@ -144,6 +151,8 @@ void SandNode::runDueFrames(const ros::Time& now) {
 }
 
 void SandNode::runFrame() {
+  replay_.carryOutDue();
+  running_pour_.pour(clock_.length());
   const ros::Time time = clock_.next();
   const double end = simulator_.time() + clock_.length();
   bodies_.update(time, clock_.length(), end);
@@ -226,16 +235,22 @@ void SandNode::waitForPoses(const ros::Time& time, const ros::WallTime& deadline
     ros::WallDuration(0.001).sleep();
 }
 
-bool SandNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-  bodies_.restore(startOf(parameters_.scene));
-  publishStatus();
+bool SandNode::reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response) {
+  response.message = calls_.make("reset", request);
   response.success = true;
-  response.message = "the sand is as it was at the start";
-  ROS_INFO_STREAM("~reset: " << response.message);
   return true;
 }
 
+std::string SandNode::startAnew() {
+  bodies_.restore(startOf(parameters_.scene));
+  publishStatus();
+  ROS_INFO_STREAM("~reset: the sand is as it was at the start");
+  return "the sand is as it was at the start";
+}
+
 void SandNode::takeParameters() {
+  clock_.setRate(parameters_.frame_rate);
+  rate_ = ros::WallRate(parameters_.frame_rate);
   surface_.follower().setRate(parameters_.publish_rate);
   if (particles_) particles_->setRate(parameters_.publish_rate);
   contacts_.setRate(parameters_.publish_rate);

@@ -78,6 +78,46 @@ TEST(FrameClock, GivesUpWhatLiesTooFarBackAndSaysSo) {
   }
 }
 
+TEST(FrameClock, TakesOtherRatesAndLosesNoMoreThanAPieceOfAFrame) {
+  std::mt19937 random = seededGenerator();
+  for (int number = 0; number < 50; ++number) {
+    FrameClock clock(uniform(random, 5.0, 1000.0));
+    clock.setRate(uniform(random, 5.0, 1000.0));
+    ros::Time now(uniform(random, 1.0, 2e9));
+    clock.due(now);
+    const ros::Time start = clock.end();
+    double taken = 0.0;
+    double frames = 0.0;
+    for (int k = 0; k < 200; ++k) {
+      if (k % 10 == 0) {
+        const ros::Time before = clock.end();
+        const double given_up = clock.givenUp();
+        clock.setRate(uniform(random, 5.0, 1000.0));
+        const double piece = (clock.end() - before).toSec();
+        EXPECT_GE(piece, 0.0);
+        EXPECT_LT(piece, clock.length());
+        EXPECT_NEAR(clock.givenUp() - given_up, piece, 1e-6);
+      }
+      now += ros::Duration(uniform(random, 0.0, 0.3));
+      for (std::int64_t due = clock.due(now); due > 0; --due, ++frames) {
+        const ros::Time before = clock.end();
+        const ros::Time end = clock.next();
+        EXPECT_NEAR((end - before).toSec(), clock.length(), 1e-8);
+        EXPECT_LE(end, now);
+        taken += clock.length();
+      }
+      EXPECT_LT((now - clock.end()).toSec(), clock.length() + 1e-8);
+    }
+    // It lies where one that had this rate from the start lies.
+    const double rate = uniform(random, 5.0, 1000.0);
+    clock.setRate(rate);
+    FrameClock other(rate);
+    other.due(clock.end());
+    EXPECT_EQ(other.end(), clock.end());
+    EXPECT_NEAR(taken + clock.givenUp(), (clock.end() - start).toSec(), 1e-6 + 1e-9 * frames);
+  }
+}
+
 TEST(FrameClock, StartsAnewAndSkipsWithoutLoss) {
   FrameClock clock(50.0);
   EXPECT_FALSE(clock.hasStarted());

@@ -5,16 +5,20 @@ import unittest
 import rospy
 import rostest
 from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
-from sand_test import SCENE
+from geometry_msgs.msg import Point, PointStamped
+from sand_test import SCENE, wait_until
 from sensor_msgs.msg import PointCloud2
 from shallow_sand.msg import Status
+from shallow_sand.srv import EditSand, EditSandRequest
+from std_msgs.msg import Header, UInt64
 from std_srvs.srv import SetBool
 
 
-def load(name, parameters):
+def load(name, parameters, kind="shallow_sand/SandNodelet", **remapped):
     rospy.set_param(name, parameters)
     rospy.wait_for_service("/manager/load_nodelet", timeout=20.0)
-    return rospy.ServiceProxy("/manager/load_nodelet", NodeletLoad)(name, "shallow_sand/SandNodelet", [], [], [], "").success
+    load_nodelet = rospy.ServiceProxy("/manager/load_nodelet", NodeletLoad)
+    return load_nodelet(name, kind, [f"{name}/{topic}" for topic in remapped], list(remapped.values()), [], "").success
 
 
 def loaded():
@@ -38,6 +42,25 @@ class Nodelets(unittest.TestCase):
         self.assertNotIn("/one", loaded())
         self.assertTrue(load("/one", dict(SCENE, robot_description="")))
         rospy.wait_for_message("/one/points", PointCloud2, timeout=20.0)
+
+    def test_clouds_are_shared(self):
+        for name in ("/one_listener", "/other_listener"):
+            self.assertTrue(load(name, {}, "shallow_sand_listener/Listener", points="/shared/points"))
+        self.assertTrue(load("/shared", dict(SCENE, robot_description="")))
+
+        def shared():
+            """The first cloud may have been there before they were connected."""
+            edited = edit(center=PointStamped(Header(frame_id="sand"), Point(0.5, 0.5, 0.0)), radius=0.2,
+                          operation=EditSandRequest.SET, value=0.2)
+            self.assertTrue(edited.success, edited.message)
+            one, other = (rospy.wait_for_message(f"/{name}_listener/address", UInt64, timeout=20.0).data for name in ("one", "other"))
+            return one == other != 0
+
+        rospy.wait_for_service("/shared/edit_sand", timeout=20.0)
+        edit = rospy.ServiceProxy("/shared/edit_sand", EditSand)
+        wait_until(shared, "the node's own cloud, the same for both")
+        # Others get a copy.
+        self.assertEqual(rospy.wait_for_message("/shared/points", PointCloud2, timeout=20.0).width, 20)
 
     def test_a_bad_parameter_leaves_the_manager_running(self):
         load("/bad", {"grid": {"spacing": -1.0}})

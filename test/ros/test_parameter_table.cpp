@@ -81,7 +81,7 @@ TEST(SandConfigFile, SaysOfTheNodesParametersWhatTheTableSays) {
     EXPECT_EQ(valueOf(row.name, SandConfig::__getDefault__()), NodeParameters().*target);
     ++compared;
   }
-  EXPECT_EQ(compared, 3);
+  EXPECT_EQ(compared, 8);
 }
 
 /// Whether Material takes a value.

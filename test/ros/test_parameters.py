@@ -52,6 +52,9 @@ class Parameters(unittest.TestCase):
             for change, word in (({"friction_angle": 90.0}, "friction_angle"), ({"layer_fraction": 0.0}, "fraction"),
                                  ({"layer_depth": 0.0}, "dilute_layer.depth"), ({"gravity_z": 0.0}, "gravity"),
                                  ({"publish_rate": math.nan}, "publish_rate"),
+                                 ({"pour_rate": 0.1, "pour_x": 5.0}, "(5, "),
+                                 ({"pour_rate": 0.1, "pour_radius": 2.0}, "radius"),
+                                 ({"frame_rate": math.nan}, "frame_rate"),
                                  # One bad value among good ones.
                                  ({"friction_angle": 20.0, "max_body_speed": math.nan}, "max_body_speed")):
                 answer = client.update_configuration(change)
@@ -59,11 +62,50 @@ class Parameters(unittest.TestCase):
                     if name != "groups":
                         self.assertEqual(answer[name], value, (change, name))
                 self.assertEqual(len(node.wait_for_error("reconfigure:", word)), 1, node.error_lines())
-            self.assertEqual(len(node.error_lines()), 6, node.error_lines())
+            self.assertEqual(len(node.error_lines()), 9, node.error_lines())
             # Friction is what it was: nothing slides.
             time_now = node.status().simulated_time
             self.assertEqual(node.status(lambda status: status.simulated_time > time_now).active_cells, 0)
             node.assert_well(self)
+
+    def test_the_pace_is_another(self):
+        with World({}), RunningNode("paced", CONE) as node:
+            client = self.reconfigure(node)
+            before = node.status(lambda status: status.simulated_time > 0.0)
+            for rate in (16.0, 125.0, 4.0):
+                self.assertEqual(client.update_configuration({"frame_rate": rate})["frame_rate"], rate)
+                changed = node.status(lambda status, start=node.status().simulated_time: status.simulated_time > start + 0.3)
+                after = node.status(lambda status: status.simulated_time > changed.simulated_time)
+                # Below ten hertz frames are cut.
+                frame = round(1e9 / rate) if rate > 10.0 else round(1e9 / 12.0)
+                for status in (changed, after):
+                    self.assertEqual(status.header.stamp.to_nsec() % frame, 0)
+                passed = (after.header.stamp - before.header.stamp).to_sec()
+                given_up = after.time_given_up - before.time_given_up
+                self.assertAlmostEqual(after.simulated_time - before.simulated_time + given_up, passed, delta=1e-5)
+            self.assertEqual(node.error_lines("ERROR"), [])
+            node.assert_well(self)
+
+    def test_sand_is_poured_all_the_time(self):
+        with World({}), RunningNode("pouring", dict(CONE, pour_rate=0.02, pour_x=0.3, pour_y=0.6, pour_radius=0.15)) as node:
+            client = self.reconfigure(node)
+            self.assertEqual(client.get_configuration(timeout=10.0)["pour_rate"], 0.02)
+            start = node.status(lambda status: status.simulated_time > 0.5)
+            # From the first frame on.
+            self.assertAlmostEqual(start.volume_poured, 0.02 * start.simulated_time, delta=1e-5)
+            client.update_configuration({"pour_rate": 0.0})
+            still = node.status(lambda status: status.simulated_time > start.simulated_time)
+            still = node.status(lambda status: status.simulated_time > still.simulated_time)
+            later = node.status(lambda status: status.simulated_time > still.simulated_time)
+            self.assertEqual(later.volume_poured, still.volume_poured)
+            # Where it is poured it grows, where it is taken it goes.
+            client.update_configuration({"pour_rate": 0.05, "pour_x": 0.8, "pour_y": 0.2})
+            wait_for_depth(node, 0.8, 0.2, lambda depth: depth > 0.1)
+            client.update_configuration({"pour_rate": -0.5})
+            wait_for_depth(node, 0.8, 0.2, lambda depth: depth < 0.02)
+            self.assertGreater(node.status(lambda status: status.volume_left > 0.0).volume_left, 0.0)
+            node.assert_well(self)
+            self.assertEqual(node.error_lines(), [])
 
     def test_a_slow_rate_becomes_a_fast_one_at_once(self):
         # A message in 100 s.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "shallow_sand/ros/call_record.h"
 #include "shallow_sand/ros/sand_bodies.h"
 
 namespace shallow_sand {
@@ -16,10 +17,9 @@ namespace shallow_sand {
 class BodyHandles {
  public:
   /// @param node below which the topics lie; what comes is handled from its callback queue
-  /// @param frame_period of the sand [s]
-  /// @param bodies must outlive this
-  BodyHandles(const ros::NodeHandle& node, const std::string& sand_frame, double frame_period,
-              SandBodies& bodies);
+  /// @param calls that know ~move_body, of bodies. They and the clock must outlive this
+  BodyHandles(const ros::NodeHandle& node, const std::string& sand_frame, const FrameClock& clock,
+              const CallRecord& calls, const SandBodies& bodies);
   /// Brings markers to the bodies, save those that are being dragged.
   void update(const std::vector<ShownBody>& shown);
 
@@ -35,8 +35,9 @@ class BodyHandles {
 
   ros::CallbackQueueInterface& queue_;
   std::string sand_frame_;
-  double frame_period_;
-  SandBodies& bodies_;
+  const FrameClock& clock_;
+  const CallRecord& calls_;
+  const SandBodies& bodies_;
   interactive_markers::InteractiveMarkerServer server_;
   std::map<std::string, Handle> handles_;
 };

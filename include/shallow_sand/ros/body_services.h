@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "shallow_sand/AddBody.h"
@@ -15,14 +16,17 @@ namespace shallow_sand {
 /// beside the sand.
 class BodyServices {
  public:
-  /// Loop, bodies and transforms must outlive this; bodies are used in the loop only.
-  BodyServices(const ros::NodeHandle& node, LoopCalls& loop, const GridParameters& grid, SandBodies& bodies,
-               TransformReader& transforms);
+  /// Loop, calls, bodies and transforms must outlive this; bodies are used in the loop only.
+  BodyServices(const ros::NodeHandle& node, LoopCalls& loop, CallRecord& calls, const GridParameters& grid,
+               SandBodies& bodies, TransformReader& transforms);
 
  private:
-  std::string add(const AddBody::Request& request);
-  std::string remove(const RemoveBody::Request& request);
-  std::string move(const MoveBody::Request& request);
+  /// What can be refused before its shape is sampled. @throws InvalidParameter, tf2::TransformException
+  void checkAdding(const AddBody::Request& request) const;
+  /// Samples its shape. @throws InvalidParameter
+  Change adding(const AddBody::Request& request);
+  Change removing(const RemoveBody::Request& request);
+  Change moving(const MoveBody::Request& request);
 
   double sand_spacing_;
   SandBodies& bodies_;

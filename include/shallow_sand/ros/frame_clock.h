@@ -17,6 +17,9 @@ class FrameClock {
 
   /// @param rate frames a second, above 0; below 10 they are cut so that none is longer than 0.1 s
   explicit FrameClock(double rate);
+  /// From now on frames have this rate, and lie at whole multiples of their new length. What lies between the
+  /// last one that was taken and the next such instant is given up.
+  void setRate(double rate);
 
   /// Of a frame [s]; a multiple of 2^-30, so that sums of them are exact. ROS time counts nanoseconds, so the
   /// two differ by up to half of one.
@@ -36,7 +39,7 @@ class FrameClock {
   /// End of the last frame that was taken; must have started.
   ros::Time end() const { return endOf(*taken_); }
   /// What was given up since the construction [s].
-  double givenUp() const { return static_cast<double>(lost_) * length(); }
+  double givenUp() const { return given_up_before_ + static_cast<double>(lost_) * length(); }
 
  private:
   std::int64_t indexAt(const ros::Time& now) const;
@@ -46,6 +49,7 @@ class FrameClock {
   std::optional<std::int64_t> taken_;  ///< the last frame; frame k ends at k times its length
   std::int64_t asked_ = 0;             ///< the last frame that was due when last asked
   std::int64_t lost_ = 0;              ///< frames
+  double given_up_before_ = 0.0;       ///< since when frames have been as long as they are [s]
 };
 
 }  // namespace shallow_sand

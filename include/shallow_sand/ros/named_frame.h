@@ -7,8 +7,7 @@
 
 namespace shallow_sand {
 
-/// Where tf has a frame now, in the sand's. @throws InvalidParameter with this key if it has no name, or no
-/// pose
+/// SandBodies::poseOf. @throws InvalidParameter with this key if the frame has no name, or no pose
 Eigen::Isometry3d poseOfNamedFrame(const SandBodies& bodies, const std::string& key,
                                    const std::string& frame);
 

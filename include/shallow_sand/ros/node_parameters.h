@@ -34,12 +34,17 @@ struct NodeParameters {
   double tf_timeout = 1.0;       ///< older poses are stale [s]
   double max_body_speed = 10.0;  ///< of a body's farthest point; what is faster is a jump [m/s]
   double mesh_cells = 1e6;       ///< most cells that ~mesh shows; a larger map is shown by blocks of cells
+  double pour_rate = 0.0;        ///< of sand that is poured all the time; below 0: taken away [m³/s]
+  double pour_x = 0.0;           ///< where: the middle of a disc in the sand's frame [m]
+  double pour_y = 0.0;           ///< [m]
+  double pour_radius = 0.1;      ///< [m]
   std::string sand_frame;        ///< instead of the scene's grid.frame, unless empty
   std::string scene_folder;      ///< that paths in the scene start from; empty: they must be absolute
   std::string state_folder;      ///< of ~save and ~load; absolute
   double snapshot_period = 0.0;  ///< of simulated time after which the state is saved; 0: never [s]
   std::string snapshot_file = "latest.tif";  ///< within the folder
   bool restore = false;                      ///< go on from that file at the start, if it is there
+  std::string replay_calls;                  ///< topic of calls that a bag plays; empty: none
   std::string report;                        ///< file for the figures at the end; empty: none
   std::string picture;                       ///< file for a shaded relief at the end; empty: none
   std::string mesh_file;                     ///< .stl or .ply for the surface at the end; empty: none

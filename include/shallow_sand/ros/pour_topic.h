@@ -3,6 +3,7 @@
 #include <ros/node_handle.h>
 
 #include "shallow_sand/PourSand.h"
+#include "shallow_sand/ros/call_record.h"
 #include "shallow_sand/ros/sand_bodies.h"
 #include "shallow_sand/sim/simulator.h"
 
@@ -12,15 +13,18 @@ namespace shallow_sand {
 /// line of the log.
 class PourTopic {
  public:
+  static constexpr const char* kName = "pour";  ///< of the topic, and in CallRecord
+
   /// Messages are taken from the global queue, all that have come, up to a thousand between two frames.
-  /// @param node whose name the topic begins with. Bodies and simulator must outlive this
-  PourTopic(ros::NodeHandle node, const SandBodies& bodies, Simulator& simulator);
+  /// @param node whose name the topic begins with. All others must outlive this
+  PourTopic(ros::NodeHandle node, CallRecord& calls, const SandBodies& bodies, Simulator& simulator);
 
  private:
   void take(const PourSand& message);
   /// @throws InvalidParameter, tf2::TransformException
   void pour(const PourSand& message);
 
+  const CallRecord& calls_;
   const SandBodies& bodies_;  ///< knows tf
   Simulator& simulator_;
   ros::WallTime told_;  ///< when the log last told of a refusal

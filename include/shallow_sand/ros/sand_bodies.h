@@ -13,6 +13,7 @@
 #include "shallow_sand/bodies/pose_track.h"
 #include "shallow_sand/ros/body_look.h"
 #include "shallow_sand/ros/body_news.h"
+#include "shallow_sand/ros/frame_clock.h"
 #include "shallow_sand/ros/node_parameters.h"
 #include "shallow_sand/ros/transform_reader.h"
 #include "shallow_sand/sim/simulator.h"
@@ -44,9 +45,11 @@ struct ShownBody {
 /// of the sand; the log tells of every change once.
 class SandBodies {
  public:
-  /// @param simulator built from the scene of `parameters`, so that its bodies are there. Simulator and
-  /// transforms must outlive this.
-  SandBodies(const NodeParameters& parameters, const TransformReader& transforms, Simulator& simulator);
+  /// @param clock of the sand
+  /// @param simulator built from the scene of `parameters`, so that its bodies are there. Simulator,
+  /// transforms and clock must outlive this.
+  SandBodies(const NodeParameters& parameters, const FrameClock& clock, const TransformReader& transforms,
+             Simulator& simulator);
 
   bool has(const std::string& name) const;
   /// @throws InvalidParameter if the name is taken or empty; so do the next two
@@ -65,7 +68,8 @@ class SandBodies {
   void move(const std::string& name, const Eigen::Isometry3d& pose, double duration);
   /// How long a body takes at least to get to a pose [s]. @throws InvalidParameter if there is no such body
   double leastDuration(const std::string& name, const Eigen::Isometry3d& pose) const;
-  /// Where tf has a frame now, in the sand's; the identity if it has no name. @throws tf2::TransformException
+  /// Where tf has a frame at the time of the sand, in the sand's; where it has it last, if it does not know
+  /// that time; the identity if it has no name. @throws tf2::TransformException
   Eigen::Isometry3d poseOf(const std::string& frame) const;
 
   /// Tells the simulator where bodies go in the frame that ends at ROS time `end` and simulated time
@@ -123,6 +127,7 @@ class SandBodies {
   double tf_delay_;
   double tf_timeout_;
   double max_body_speed_;
+  const FrameClock& clock_;
   const TransformReader& transforms_;
   Simulator& simulator_;
   std::vector<Body> bodies_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "shallow_sand/EditSand.h"
@@ -13,10 +14,11 @@ namespace shallow_sand {
 class SandEditing {
  public:
   /// All must outlive this; bodies, which know tf, and simulator are used in the loop only.
-  SandEditing(const ros::NodeHandle& node, LoopCalls& loop, const SandBodies& bodies, Simulator& simulator);
+  SandEditing(const ros::NodeHandle& node, LoopCalls& loop, CallRecord& calls, const SandBodies& bodies,
+              Simulator& simulator);
 
  private:
-  std::string edit(const EditSand::Request& request, EditSand::Response& response);
+  std::function<std::string(EditSand::Response&)> editing(const EditSand::Request& request);
 
   const SandBodies& bodies_;
   Simulator& simulator_;

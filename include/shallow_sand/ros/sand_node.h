@@ -13,6 +13,8 @@
 #include "shallow_sand/ros/body_handles.h"
 #include "shallow_sand/ros/body_markers.h"
 #include "shallow_sand/ros/body_services.h"
+#include "shallow_sand/ros/call_record.h"
+#include "shallow_sand/ros/call_replay.h"
 #include "shallow_sand/ros/contacts_publisher.h"
 #include "shallow_sand/ros/diagnostics.h"
 #include "shallow_sand/ros/frame_clock.h"
@@ -23,6 +25,7 @@
 #include "shallow_sand/ros/pour_topic.h"
 #include "shallow_sand/ros/reconfiguration.h"
 #include "shallow_sand/ros/robot.h"
+#include "shallow_sand/ros/running_pour.h"
 #include "shallow_sand/ros/sand_bodies.h"
 #include "shallow_sand/ros/sand_editing.h"
 #include "shallow_sand/ros/sand_queries.h"
@@ -54,6 +57,8 @@ namespace shallow_sand {
 /// - publishes ~status (latched, once a second) and ~bodies (latched, when one has moved, at most at
 /// ~publish_rate);
 /// - publishes /diagnostics, once a second of the wall clock;
+/// - publishes on ~calls what changed the sand or its bodies by service, ~pour or handle, and does it again
+/// at the same frames when a bag plays it on ~replay_calls;
 /// - takes sand from and for ~pour, and lets bodies be dragged by interactive markers under ~body_handles;
 /// - at the end writes ~report, ~picture and ~mesh_file.
 class SandNode {
@@ -80,6 +85,7 @@ class SandNode {
   bool pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool step(Step::Request& request, Step::Response& response);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  std::string startAnew();
   /// Runs a paused sand on by whole frames. @throws InvalidParameter if it is not paused, or for a duration
   /// that is too long or none
   void stepBy(double duration);
@@ -90,7 +96,7 @@ class SandNode {
   void requestFields();
   /// Gives those that were requested to those who wait for them.
   void handOverFields();
-  /// ~publish_rate, ~height_field_rate and ~max_body_speed are others.
+  /// Some of those that dynamic_reconfigure changes are others.
   void takeParameters();
   void showBodies();
   void publishStatus();
@@ -106,18 +112,21 @@ class SandNode {
   SandBodies bodies_;
   std::vector<Robot> robots_;
   LoopCalls loop_calls_;
+  CallRecord calls_;
   SandStates states_;  ///< before what tells others of the sand
   BodyServices services_;
   SandEditing editing_;
   SandSetting setting_;
   SandQueries queries_;
   PourTopic pour_;
+  RunningPour running_pour_;
   BodyMarkers body_markers_;
   BodyHandles body_handles_;
   HeightFieldPublisher height_field_;
   SurfacePublisher surface_;
   ContactsPublisher contacts_;
   std::optional<ParticlesPublisher> particles_;  ///< if the scene has grains
+  CallReplay replay_;
   Diagnostics diagnostics_;
   Reconfiguration reconfiguration_;
   ros::Publisher status_;
@@ -125,6 +134,7 @@ class SandNode {
   ros::ServiceServer step_;
   ros::ServiceServer reset_;
   bool paused_;
+  ros::WallRate rate_;                  ///< of the loop
   std::optional<ros::Time> requested_;  ///< time of the fields that are under way from the simulator
   ros::Time last_now_;                  ///< ROS time
   ros::WallTime last_status_;

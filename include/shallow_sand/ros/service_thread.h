@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "shallow_sand/core/one_line.h"
+#include "shallow_sand/ros/call_record.h"
 #include "shallow_sand/ros/loop_calls.h"
 
 namespace shallow_sand {
@@ -46,6 +47,31 @@ class ServiceThread {
     };
     servers_.push_back(node_.advertiseService<typename Service::Request, typename Service::Response>(
         name, boost::function<bool(typename Service::Request&, typename Service::Response&)>(answer)));
+  }
+  /// The same for requests that change the sand or its bodies, which can be replayed.
+  /// @param prepare as in CallRecord::know; what it returns is done in the loop, and returns the message
+  /// @param check in the loop, throws what can be refused before anything that takes long is computed
+  template <class Service>
+  void serveChange(
+      const std::string& name, CallRecord& calls,
+      std::function<std::function<std::string(typename Service::Response&)>(const typename Service::Request&)>
+          prepare,
+      std::function<void(const typename Service::Request&)> check = {}) {
+    using Request = typename Service::Request;
+    using Response = typename Service::Response;
+    calls.know<Request>(name, [prepare](const Request& request) -> Change {
+      return [change = prepare(request)] {
+        Response nobody_reads;
+        return change(nobody_reads);
+      };
+    });
+    serve<Service>(name, [this, name, &calls, prepare, check](const Request& request, Response& response) {
+      if (check) inLoop([&] { check(request); });
+      const auto change = prepare(request);
+      std::string done;
+      inLoop([&] { done = calls.make(name, request, [&] { return change(response); }); });
+      return done;
+    });
   }
   /// Requests are taken from now on: when all that handlers need is there.
   void start() { spinner_.start(); }
