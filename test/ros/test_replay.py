@@ -244,7 +244,7 @@ class Replay(unittest.TestCase):
             ("edit_sand", bytes(70000), "70000 bytes"),
             # Thirty gigabytes of dimensions.
             ("add_body", add[:lengths] + b"\xff\xff\xff\xff" + add[lengths + 4:], "add_body is refused", "bad_alloc"),
-            ("edit_sand", serialised(EditSandRequest()), "radius: "),
+            ("edit_sand", serialised(EditSandRequest()), "center.header.frame_id: "),
         ]
         with World({}) as world, RunningNode("careful", dict(SCENE, robot_description="", tf_delay=0.1, replay_calls="/bag")) as node:
             bag = rospy.Publisher("/bag", ServiceCall, queue_size=1000)
