@@ -49,6 +49,8 @@ int main(int argument_count, char** arguments) {
   std::string name = "cpu";
   CLI::App app("Measures how fast the sand is.", "sand_benchmark");
   app.add_option("--backend", name, "cpu (the default) or cuda")->check(CLI::IsMember({"cpu", "cuda"}));
+  bool table = false;
+  app.add_flag("--table1", table, "only the paper's Table 1, printed beside it [ms per frame of 1/50 s]");
   app.footer("Options that begin with --benchmark_ are Google Benchmark's.");
   app.allow_extras();
   try {
@@ -62,5 +64,10 @@ int main(int argument_count, char** arguments) {
   if (!reason.empty()) return failed("nothing is measured: " + reason);
   std::vector<std::string> others = app.remaining();
   others.insert(others.begin(), arguments[0]);
+  if (table) {
+    Table1Printer printer;
+    return runBenchmarks(
+        others, [&] { registerTable1(backend); }, &printer);
+  }
   return runBenchmarks(others, [&] { registerBenchmarks(backend); });
 }

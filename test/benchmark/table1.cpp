@@ -3,6 +3,8 @@
 #include <benchmark/benchmark.h>
 
 #include <exception>
+#include <iomanip>
+#include <sstream>
 
 #include "benchmark/table1_rows.h"
 #include "benchmark/timing.h"
@@ -80,7 +82,48 @@ void registerRow(const std::string& name, const Table1Row& row, Backend backend,
       ->Unit(benchmark::kMillisecond);
 }
 
+/// Of a map; a dash where there is no such figure.
+std::string figure(const std::map<std::string, double>& figures, const std::string& name) {
+  const auto found = figures.find(name);
+  if (found == figures.end()) return "–";
+  std::ostringstream text;
+  text << std::setprecision(2) << found->second;
+  return text.str();
+}
+
 }  // namespace
+
+bool Table1Printer::ReportContext(const Context&) { return true; }
+
+void Table1Printer::ReportRuns(const std::vector<Run>& runs) {
+  for (const Run& run : runs) {
+    const std::string name = run.benchmark_name();
+    const std::size_t begin = name.find('/') + 1;
+    const std::string row = name.substr(begin, name.find('/', begin) - begin);
+    if (run.error_occurred) {
+      GetErrorStream() << row << ": " << run.error_message << "\n";
+      continue;
+    }
+    GetErrorStream() << name << "\n";  // long work shows progress
+    for (const auto& counter : run.counters) figures_[row][counter.first] = counter.second.value;
+    const bool with_grains = name.rfind("table1_grains/", 0) == 0;
+    if (!with_grains) figures_[row]["frame_ms"] = run.GetAdjustedRealTime();
+  }
+}
+
+void Table1Printer::Finalize() {
+  std::ostream& out = GetOutputStream();
+  out << "| row | steps | frame | t_d | t_i | t_p | t_p, all grains move | the paper, GTX 1060 |\n"
+         "|---|---|---|---|---|---|---|---|\n";
+  for (const Table1Row& row : table1Rows()) {
+    const auto found = figures_.find(row.name);
+    if (found == figures_.end()) continue;
+    out << "| " << row.name << " | ";
+    for (const char* name : {"steps", "frame_ms", "td_ms", "ti_ms", "tp_ms", "tp_all_ms"})
+      out << figure(found->second, name) << " | ";
+    out << row.paper << " |\n";
+  }
+}
 
 void registerTable1(Backend backend) {
   for (const Table1Row& row : table1Rows()) {

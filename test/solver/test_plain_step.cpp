@@ -53,9 +53,10 @@ PlacedBody placed(const RandomScene& scene, std::size_t number, double time) {
   };
   PlacedBody result;
   result.body = number;
-  result.view = {body.field->view(nullptr), rounded(to_body.col(0)), rounded(to_body.col(1)),
-                 rounded(to_body.col(2)),   rounded(middle),         rounded(twist.linear),
-                 rounded(twist.angular),    rounded(middle - reach), rounded(middle + reach)};
+  result.view = {static_cast<int>(number), body.field->view(nullptr), rounded(to_body.col(0)),
+                 rounded(to_body.col(1)),  rounded(to_body.col(2)),   rounded(middle),
+                 rounded(twist.linear),    rounded(twist.angular),    rounded(middle - reach),
+                 rounded(middle + reach)};
   result.window = {cell(middle.x() - reach.x(), grid.columns), cell(middle.y() - reach.y(), grid.rows),
                    cell(middle.x() + reach.x() + grid.spacing, grid.columns),
                    cell(middle.y() + reach.y() + grid.spacing, grid.rows)};
