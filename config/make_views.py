@@ -9,7 +9,7 @@ import yaml
 VIEWS = {
     "sand": {"focus": (2.0, 1.0, 0.0), "distance": 6.0, "pitch": 0.6, "yaw": 0.85, "robot": "visual", "panels": True},
     "excavator/excavation": {"focus": (1.6, 0.35, 0.4), "distance": 6.7, "pitch": 0.6, "yaw": 0.85, "robot": "visual"},
-    "sand_table/sand_table": {"focus": (2.5, 1.2, 0.0), "distance": 4.4, "pitch": 0.75, "yaw": -1.35, "robot": "visual"},
+    "sand_table/sand_table": {"focus": (2.5, 1.2, 0.0), "distance": 5.2, "pitch": 0.75, "yaw": -1.35, "robot": "visual"},
     "rover/rover": {"focus": (11.5, 9.0, -0.3), "distance": 15.0, "pitch": 0.45, "yaw": -2.3, "robot": "visual"},
     "bulldozer/bulldozer": {"focus": (9.5, 6.0, 0.0), "distance": 19.0, "pitch": 0.6, "yaw": -1.1, "robot": "visual"},
     # The bucket's visual mesh is turned against the collision mesh, which is what the sand meets.

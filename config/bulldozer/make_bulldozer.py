@@ -16,11 +16,12 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.append(str(HERE.parent))
 from vehicles import Description, box, cylinder, ease, write_motion  # noqa: E402
 
-LANES = (1.9, 3.9, 5.9, 7.9, 9.9)  # m, y of passes: the blade is 3.0 m wide
-WEST, EAST = 2.4, 14.2  # m, between which the bulldozer's middle goes
+# Where passes go, y [m], and how fast [m/s]: the blade is 3.0 m wide. The last ones take up what the first ones have left between them.
+PASSES = ((2.1, 0.8), (4.7, 0.8), (7.3, 0.8), (9.9, 0.8), (8.6, 1.2), (6.0, 1.2), (3.4, 1.2))
+WEST, EAST = 2.4, 13.2  # m, between which the bulldozer's middle goes
 BLADE_AHEAD, LIFT = 1.95, 0.55  # m
-SPEED, BACK_SPEED, LIFT_TIME = 1.3, 3.0, 1.2  # m/s, s
-INTERVAL = 0.1  # s
+BACK_SPEED, LIFT_TIME = 3.0, 1.0  # m/s, s
+INTERVAL = 0.2  # s
 COLORS = {"yellow": (0.96, 0.72, 0.08), "rubber": (0.10, 0.10, 0.11), "tread": (0.22, 0.22, 0.23), "metal": (0.45, 0.46, 0.48), "steel": (0.72, 0.73, 0.75),
           "glass": (0.15, 0.20, 0.25), "lamp": (1, 0.97, 0.85)}
 
@@ -55,14 +56,13 @@ def describe(file):
         box((0.5, 1.1, 0.5), (-1.45, 0, 0.72), color="yellow"),
     )
     dozer.joint("lift", "prismatic", "bulldozer", "blade", (0, 0, 1), (BLADE_AHEAD, 0, 0))
-    # The middle of the mouldboard stands back, so that it is hollow; its edge is at the link's z = 0.
+    # Its edge is at the link's z = 0. Upright, for sand is carried by what it lies on.
     dozer.link(
         "blade",
-        box((0.12, 3.0, 0.36), (0.02, 0, 0.18), color="yellow", solid=True),
-        box((0.12, 3.0, 0.44), (-0.02, 0, 0.54), color="yellow", solid=True),
-        box((0.12, 3.0, 0.44), (0.02, 0, 0.95), (0, 0.12, 0), color="yellow", solid=True),
+        box((0.14, 3.0, 1.30), (0.0, 0, 0.65), color="yellow", solid=True),
+        *(box((0.10, 2.9, 0.07), (-0.10, 0, z), color="yellow") for z in (0.15, 0.60, 1.10)),
         box((0.04, 3.0, 0.12), (0.09, 0, 0.06), color="steel"),
-        *(box((0.70, 0.08, 1.14), (0.28, y, 0.57), color="yellow", solid=True) for y in (-1.47, 1.47)),
+        *(box((0.70, 0.08, 1.20), (0.28, y, 0.60), color="yellow", solid=True) for y in (-1.47, 1.47)),
         *(box((1.9, 0.14, 0.20), (-0.95, y, 0.32), color="yellow") for y in (-1.22, 1.22)),
         *(cylinder(0.055, 0.95, (-0.42, y, 0.80), (0, -1.05, 0), color="steel") for y in (-0.40, 0.40)),
     )
@@ -75,7 +75,7 @@ def smooth(share):
 
 def cycle():
     """Rows time, x, y, yaw, lift; phases."""
-    rows, phases, time = [(0.0, WEST, LANES[0], 0.0, 0.0)], [], 0.0
+    rows, phases, time = [(0.0, WEST, PASSES[0][0], 0.0, 0.0)], [], 0.0
 
     def move(duration, place):
         nonlocal time
@@ -84,22 +84,24 @@ def cycle():
         time += duration
 
     length = EAST - WEST
-    for number, (lane, after) in enumerate(zip(LANES, (*LANES[1:], LANES[-1])), 1):
+    for number, (lane, speed) in enumerate(PASSES, 1):
         start = time
-        move(length / SPEED / 0.9, lambda share: (WEST + length * ease(share), lane, 0.0, 0.0))
+        move(length / speed / 0.9, lambda share: (WEST + length * ease(share), lane, 0.0, 0.0))
         phases.append((f"pass_{number}", start, time))
         # The blade comes out backwards, or it would tear down what it has heaped.
         move(LIFT_TIME, lambda share: (EAST - 0.6 * smooth(share), lane, 0.0, LIFT * smooth(share)))
-        back, reach = length - 0.6, 4.5
+        if number == len(PASSES):
+            break
+        after, back, reach = PASSES[number][0], length - 0.6, 6.0
 
         def backward(share):
             x = EAST - 0.6 - back * ease(share)
             aside = np.clip((WEST + 0.3 + reach - x) / reach, 0.0, 1.0)
             slope = -(after - lane) * 6 * aside * (1 - aside) / reach
             return x, lane + (after - lane) * smooth(aside), np.arctan(slope), LIFT
-        if number < len(LANES):
-            move(back / BACK_SPEED / 0.9, backward)
-            move(LIFT_TIME, lambda share: (WEST, after, 0.0, LIFT * (1 - smooth(share))))
+
+        move(back / BACK_SPEED / 0.9, backward)
+        move(LIFT_TIME, lambda share: (WEST, after, 0.0, LIFT * (1 - smooth(share))))
     return np.array(rows), phases
 
 

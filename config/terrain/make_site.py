@@ -16,13 +16,13 @@ HEAPS = 26
 
 
 def surface(x, y):
-    ground = 0.01 + 0.05 * rough(x, y, 3.0, 3)
+    ground = 0.015 + 0.05 * rough(x, y, 3.0, 3)
     for k in range(HEAPS):
         # Every second is a hollow, not as deep as heaps are high, and has sand to its west.
         hollow = k % 2 == 1
-        a, b = RANDOM.uniform([9.0 if hollow else 6.0, 1.5], [13.5 if hollow else 11.0, 10.5])
-        height, radius = RANDOM.uniform(0.10, 0.28), RANDOM.uniform(0.8, 1.2)
-        ground = ground + (-0.8 if hollow else 1.0) * height * np.exp(-((x - a) ** 2 + (y - b) ** 2) / radius**2)
+        a, b = RANDOM.uniform([9.0 if hollow else 6.0, 1.0], [13.0 if hollow else 11.0, 11.0])
+        height, radius = RANDOM.uniform(0.08, 0.22), RANDOM.uniform(0.8, 1.2)
+        ground = ground + (-0.7 if hollow else 1.0) * height * np.exp(-((x - a) ** 2 + (y - b) ** 2) / radius**2)
     return ground * smooth_step(4.5, 6.5, x) * smooth_step(19.5, 16.0, x)
 
 
