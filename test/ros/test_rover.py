@@ -27,14 +27,12 @@ class Rover(unittest.TestCase):
         rospy.loginfo("tracks are %.3f m deep (median); away from them the ground moved by %.1g m", numpy.median(drop[covered]),
                       numpy.abs(drop[away]).max())
         for frame in WHEELS:
-            track = tracks.between_ends(frame, after.header.stamp.to_sec(), ENDS)
-            depth = drop[(track[:, 2] / after.spacing).astype(int), (track[:, 1] / after.spacing).astype(int)]
+            depth = drop[tracks.under(frame, after, WIDTH, ENDS)].max(axis=0)
             self.assertAlmostEqual(numpy.median(depth), SINKAGE, delta=SINKAGE / 3, msg=frame)
         self.assertLess(numpy.abs(drop[away]).max(), 0.01)
         self.assertLess(status.volume_error, 1e-6)
         # Over the rim: the way goes up to its crest and down again.
-        front = tracks.between_ends("wheel_front_left", after.header.stamp.to_sec(), 0.0)
-        way = ground(before)[(front[:, 2] / after.spacing).astype(int), (front[:, 1] / after.spacing).astype(int)]
+        way = ground(before)[tracks.under("wheel_front_left", after, 0.0, 0.0)][0]
         self.assertGreater(way.max(), max(way[0], way[-1]) + 0.1)
 
 

@@ -70,6 +70,13 @@ class WheelTracks:
         first, last = (numpy.hypot(*(places[:, 1:3] - places[k, 1:3]).T) for k in (0, -1))
         return places[(first > ends) & (last > ends)]
 
+    def under(self, frame, field, width, ends):
+        """Rows and columns of the cells under a wheel: one line for each place across it, one column for each time."""
+        track = self.between_ends(frame, field.header.stamp.to_sec(), ends)
+        aside = numpy.linspace(-width / 2, width / 2, 2 * round(width / field.spacing) + 1)[:, None]
+        y, x = (track[:, 1 + axis] + aside * track[:, 3 + axis] for axis in (1, 0))
+        return ((y - field.origin_y) / field.spacing).astype(int), ((x - field.origin_x) / field.spacing).astype(int)
+
     def cells(self, field, width, ends):
         """Of the map: those that tracks of this width cover, and those at the ends of tracks."""
         covered, at_ends = (numpy.zeros((field.rows, field.columns), bool) for _ in range(2))
@@ -77,11 +84,7 @@ class WheelTracks:
         y = (field.origin_y + field.spacing * (numpy.arange(field.rows) + 0.5))[:, None]
         until = field.header.stamp.to_sec()
         for frame in self.frames:
-            for aside in numpy.linspace(-width / 2, width / 2, 2 * int(width / field.spacing) + 1):
-                track = self.between_ends(frame, until, ends)
-                column, row = ((track[:, 1 + axis] + aside * track[:, 3 + axis] - origin) / field.spacing
-                               for axis, origin in ((0, field.origin_x), (1, field.origin_y)))
-                covered[row.astype(int), column.astype(int)] = True
+            covered[self.under(frame, field, width, ends)] = True
             for _, end_x, end_y, *_ in (self.places[frame][0], [p for p in self.places[frame] if p[0] <= until][-1]):
                 at_ends |= numpy.hypot(x - end_x, y - end_y) <= ends
         return covered & ~at_ends, at_ends
