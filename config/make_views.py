@@ -77,7 +77,8 @@ def config(view):
                    {"Class": "rviz/Tool Properties", "Name": "Tool Properties"}],
         "Visualization Manager": {
             "Class": "", "Displays": displays(view), "Tools": tools(), "Value": True, "Views": {"Current": camera(view), "Saved": None},
-            "Global Options": {"Background Color": view.get("background", "188; 204; 216"), "Default Light": True, "Fixed Frame": "sand", "Frame Rate": 30}},
+            "Global Options": {"Background Color": view.get("background", "188; 204; 216"), "Default Light": True, "Fixed Frame": "sand",
+                               "Frame Rate": 30}},
         "Window Geometry": {
             "Displays": {"collapsed": collapsed}, "Views": {"collapsed": collapsed}, "Tool Properties": {"collapsed": collapsed},
             "Hide Left Dock": collapsed, "Hide Right Dock": True, "Width": 1280, "Height": 800, "X": 0, "Y": 0},

@@ -47,7 +47,7 @@ class Description:
         self.lines.append("  </link>")
 
     def joint(self, name, kind, parent, child, axis=(0, 0, 1), xyz=(0, 0, 0)):
-        limit = "" if kind in ("fixed", "continuous") else '<limit lower="-100" upper="100" effort="1" velocity="100"/>'
+        limit = "" if kind == "continuous" else '<limit lower="-100" upper="100" effort="1" velocity="100"/>'
         self.lines.append(f'  <joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
                           f'<origin xyz="{numbers(xyz)}"/><axis xyz="{numbers(axis)}"/>{limit}</joint>')
 
@@ -70,7 +70,8 @@ def wheel(radius, width, color, lugs):
     """Shapes of a wheel about y: what meets the sand, and lugs and spokes by which one sees it turn."""
     shapes = [cylinder(radius, width, color="rubber", solid=True), cylinder(0.62 * radius, 1.04 * width, color=color)]
     for angle in np.arange(lugs) * 2 * np.pi / lugs:
-        shapes.append(box((0.10 * radius, 1.01 * width, 0.16 * radius), (0.95 * radius * np.sin(angle), 0, 0.95 * radius * np.cos(angle)), (0, angle, 0), "tread"))
+        place = 0.95 * radius * np.sin(angle), 0, 0.95 * radius * np.cos(angle)
+        shapes.append(box((0.10 * radius, 1.01 * width, 0.16 * radius), place, (0, angle, 0), "tread"))
     for angle in np.arange(3) * np.pi / 3:
         shapes.append(box((0.12 * radius, 1.08 * width, 1.1 * radius), rpy=(0, angle, 0), color="tread"))
     return shapes
@@ -100,7 +101,8 @@ def ease(share):
     """From 0 to 1, at rest at both ends, even in between."""
     ramp = 0.1
     share = np.clip(share, 0.0, 1.0)
-    return np.where(share < ramp, share**2 / 2 / ramp, np.where(share > 1 - ramp, 1 - ramp - (1 - share) ** 2 / 2 / ramp, share - ramp / 2)) / (1 - ramp)
+    late = np.where(share > 1 - ramp, 1 - ramp - (1 - share) ** 2 / 2 / ramp, share - ramp / 2)
+    return np.where(share < ramp, share**2 / 2 / ramp, late) / (1 - ramp)
 
 
 def along(path, share):

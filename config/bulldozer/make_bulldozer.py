@@ -22,8 +22,10 @@ WEST, EAST = 2.4, 13.2  # m, between which the bulldozer's middle goes
 BLADE_AHEAD, LIFT = 1.95, 0.55  # m
 BACK_SPEED, LIFT_TIME = 3.0, 1.0  # m/s, s
 INTERVAL = 0.2  # s
-COLORS = {"yellow": (0.96, 0.72, 0.08), "rubber": (0.10, 0.10, 0.11), "tread": (0.22, 0.22, 0.23), "metal": (0.45, 0.46, 0.48), "steel": (0.72, 0.73, 0.75),
-          "glass": (0.15, 0.20, 0.25), "lamp": (1, 0.97, 0.85)}
+COLORS = {
+    "yellow": (0.96, 0.72, 0.08), "rubber": (0.10, 0.10, 0.11), "tread": (0.22, 0.22, 0.23), "metal": (0.45, 0.46, 0.48),
+    "steel": (0.72, 0.73, 0.75), "glass": (0.15, 0.20, 0.25), "lamp": (1, 0.97, 0.85),
+}
 
 
 def track(y):

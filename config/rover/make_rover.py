@@ -25,8 +25,10 @@ DURATION, INTERVAL = 20.0, 0.2  # s
 SIDES = {"left": 1, "right": -1}
 # m; straight over the plain, up the rim, and along the slope inside
 WAYPOINTS = np.array([(5.4, 6.5), (7.2, 8.0), (9.4, 9.2), (11.6, 9.6), (13.6, 8.9), (15.0, 7.6), (15.4, 5.9)])
-COLORS = {"rubber": (0.16, 0.16, 0.17), "tread": (0.45, 0.45, 0.46), "metal": (0.80, 0.80, 0.78), "white": (0.93, 0.93, 0.91), "gold": (0.83, 0.62, 0.20),
-          "panel": (0.06, 0.09, 0.20), "black": (0.07, 0.07, 0.08)}
+COLORS = {
+    "rubber": (0.16, 0.16, 0.17), "tread": (0.45, 0.45, 0.46), "metal": (0.80, 0.80, 0.78), "white": (0.93, 0.93, 0.91),
+    "gold": (0.83, 0.62, 0.20), "panel": (0.06, 0.09, 0.20), "black": (0.07, 0.07, 0.08),
+}
 
 
 def strut(start, end, thickness=0.07):

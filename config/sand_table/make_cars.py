@@ -24,8 +24,10 @@ DURATION = 24.0  # s
 INTERVAL = 0.2  # s
 WHEELS = {"front_left": (1, 1), "front_right": (1, -1), "rear_left": (-1, 1), "rear_right": (-1, -1)}
 CARS = {"red": (0.80, 0.13, 0.09), "blue": (0.10, 0.30, 0.65)}
-COLORS = {"rubber": (0.10, 0.10, 0.11), "tread": (0.20, 0.20, 0.21), "metal": (0.70, 0.71, 0.73), "glass": (0.10, 0.14, 0.18), "lamp": (1, 0.97, 0.85),
-          **CARS}
+COLORS = {
+    "rubber": (0.10, 0.10, 0.11), "tread": (0.20, 0.20, 0.21), "metal": (0.70, 0.71, 0.73), "glass": (0.10, 0.14, 0.18),
+    "lamp": (1, 0.97, 0.85), **CARS,
+}
 
 
 def describe(file):

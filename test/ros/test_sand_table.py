@@ -17,7 +17,7 @@ class SandTable(unittest.TestCase):
     def test_ruts(self):
         before = height_field()
         tracks = WheelTracks(WHEELS)
-        tracks.follow(0.9, 20.0)
+        tracks.follow(0.75, 20.0)
         after = height_field()
         status = rospy.wait_for_message("/sand_node/status", Status, timeout=10.0)
         drop = ground(before) - ground(after)
