@@ -17,8 +17,7 @@ class Rover(unittest.TestCase):
     def test_tracks(self):
         before = height_field()
         tracks = WheelTracks(WHEELS)
-        tracks.follow(4.0, 20.0)
-        after = height_field()
+        after = tracks.sand_after(4.5, 20.0)
         status = rospy.wait_for_message("/sand_node/status", Status, timeout=10.0)
         drop = ground(before) - ground(after)
         covered, at_ends = tracks.cells(after, WIDTH, ENDS)

@@ -5,8 +5,15 @@ import tf2_ros
 from shallow_sand.msg import HeightField
 
 
-def height_field():
-    return rospy.wait_for_message("/sand_node/height_field", HeightField, timeout=10.0)
+def height_field(since=0.0, limit=10.0):
+    """The map as soon as the sand has come to a time."""
+    deadline = rospy.Time.now() + rospy.Duration(limit)
+    while rospy.Time.now() < deadline:
+        field = rospy.wait_for_message("/sand_node/height_field", HeightField, timeout=limit)
+        if field.header.stamp.to_sec() >= since:
+            return field
+        rospy.sleep(0.1)
+    raise AssertionError("the sand is not at %f within %g s" % (since, limit))
 
 
 def by_rows(field, values):
@@ -40,7 +47,7 @@ class WheelTracks:
         self.places = {frame: [] for frame in frames}  # rows: time, x, y, x and y of the axle
 
     def follow(self, way, limit):
-        """Until each wheel has gone so far, seen from above [m]."""
+        """Until each wheel has gone so far, seen from above [m]. @return the time [s]"""
         deadline = rospy.Time.now() + rospy.Duration(limit)
         rate = rospy.Rate(50)
         while min(self.way(frame) for frame in self.frames) < way:
@@ -49,10 +56,19 @@ class WheelTracks:
             for frame in self.frames:
                 self.look(frame)
             rate.sleep()
+        return max(places[-1][0] for places in self.places.values())
 
-    def look(self, frame):
+    def sand_after(self, way, limit):
+        """The map after each wheel has gone so far, to whose time tracks then reach."""
+        field = height_field(self.follow(way, limit))
+        for frame in self.frames:
+            for time in numpy.arange(self.places[frame][-1][0], field.header.stamp.to_sec(), 0.02):
+                self.look(frame, rospy.Time.from_sec(time))
+        return field
+
+    def look(self, frame, time=rospy.Time(0)):
         try:
-            message = self.buffer.lookup_transform("sand", frame, rospy.Time(0))
+            message = self.buffer.lookup_transform("sand", frame, time)
         except tf2_ros.TransformException:
             return
         q, t = message.transform.rotation, message.transform.translation
