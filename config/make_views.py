@@ -9,6 +9,10 @@ import yaml
 VIEWS = {
     "sand": {"focus": (2.0, 1.0, 0.0), "distance": 6.0, "pitch": 0.6, "yaw": 0.85, "robot": "visual", "panels": True},
     "excavator/excavation": {"focus": (1.6, 0.35, 0.4), "distance": 6.7, "pitch": 0.6, "yaw": 0.85, "robot": "visual"},
+    "sand_table/sand_table": {"focus": (2.5, 1.2, 0.0), "distance": 5.2, "pitch": 0.75, "yaw": -1.35, "robot": "visual"},
+    "rover/rover": {"focus": (11.5, 9.0, -0.3), "distance": 15.0, "pitch": 0.45, "yaw": -2.3, "robot": "visual",
+                    "sand_color": "158; 155; 150", "background": "8; 8; 10"},
+    "bulldozer/bulldozer": {"focus": (10.4, 5.0, 0.0), "distance": 20.0, "pitch": 0.6, "yaw": -1.1, "robot": "visual"},
     # The bucket's visual mesh is turned against the collision mesh, which is what the sand meets.
     "robots/zx120": {"focus": (2.8, 1.2, 0.8), "distance": 14.0, "pitch": 0.55, "yaw": 0.85, "robot": "collision"},
     "robots/leo": {"focus": (1.2, 0.25, 0.0), "distance": 2.6, "pitch": 0.6, "yaw": -2.2, "robot": "visual"},
@@ -36,7 +40,8 @@ def displays(view):
     shown = [robot(view)] if "robot" in view else []
     shown.append({"Class": "shallow_sand/HeightField", "Name": "Sand", "Enabled": True, "Value": True,
                   "Topic": "/sand_node/height_field", "Show Sand": not view.get("grains", False),
-                  "Color By": view.get("color_by", "Sand"), "Contour Interval": view.get("contours", 0)})
+                  "Color By": view.get("color_by", "Sand"), **({"Sand Color": view["sand_color"]} if "sand_color" in view else {}),
+                  "Contour Interval": view.get("contours", 0)})
     shown.append({"Class": "rviz/MarkerArray", "Name": "Bodies", "Enabled": True, "Value": True, "Marker Topic": "/sand_node/bodies",
                   "Queue Size": 10, "Namespaces": {}})
     shown.append({"Class": "rviz/InteractiveMarkers", "Name": "Handles", "Enabled": True, "Value": True,
@@ -72,7 +77,8 @@ def config(view):
                    {"Class": "rviz/Tool Properties", "Name": "Tool Properties"}],
         "Visualization Manager": {
             "Class": "", "Displays": displays(view), "Tools": tools(), "Value": True, "Views": {"Current": camera(view), "Saved": None},
-            "Global Options": {"Background Color": "188; 204; 216", "Default Light": True, "Fixed Frame": "sand", "Frame Rate": 30}},
+            "Global Options": {"Background Color": view.get("background", "188; 204; 216"), "Default Light": True, "Fixed Frame": "sand",
+                               "Frame Rate": 30}},
         "Window Geometry": {
             "Displays": {"collapsed": collapsed}, "Views": {"collapsed": collapsed}, "Tool Properties": {"collapsed": collapsed},
             "Hide Left Dock": collapsed, "Hide Right Dock": True, "Width": 1280, "Height": 800, "X": 0, "Y": 0},

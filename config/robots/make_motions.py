@@ -40,7 +40,8 @@ class Robot:
         numbers = lambda tag, key, default: np.array((joint.find(tag).get(key, default) if joint.find(tag) is not None else default).split(), float)
         roll, pitch, yaw = numbers("origin", "rpy", "0 0 0")
         origin = pose(rotation([0, 0, 1], yaw) @ rotation([0, 1, 0], pitch) @ rotation([1, 0, 0], roll), numbers("origin", "xyz", "0 0 0"))
-        turn = pose(rotation(numbers("axis", "xyz", "1 0 0"), angles.get(joint.get("name"), 0.0)))
+        axis, position = numbers("axis", "xyz", "1 0 0"), angles.get(joint.get("name"), 0.0)
+        turn = pose(position=axis * position) if joint.get("type") == "prismatic" else pose(rotation(axis, position))
         return self.frame(joint.find("parent").get("link"), angles) @ origin @ turn
 
 

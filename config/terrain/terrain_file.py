@@ -1,4 +1,4 @@
-"""Writes elevations as a GeoTIFF of whole numbers. Needs gdal_translate and gdalbuildvrt (package gdal-bin)."""
+"""Elevations as a GeoTIFF of whole numbers, written and read. Needs gdal_translate and gdalbuildvrt (package gdal-bin)."""
 
 import pathlib
 import subprocess
@@ -27,3 +27,11 @@ def write(name, pixel, unit, bands):
         stack.write_text(described, encoding="utf-8")
         subprocess.run(["gdal_translate", "-q", "-ot", "Int16", "-a_scale", str(unit), "-a_offset", "0", "-co", "COMPRESS=DEFLATE",
                         "-co", "PREDICTOR=2", "-co", "ZLEVEL=9", "-co", "INTERLEAVE=BAND", stack, HERE / name], check=True)
+
+
+def read(name, band):
+    """@return elevations that `write` wrote [m], south first. @param band its number, from 1"""
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder, "band.asc")
+        subprocess.run(["gdal_translate", "-q", "-of", "AAIGrid", "-b", str(band), "-unscale", "-ot", "Float64", HERE / name, file], check=True)
+        return np.loadtxt(file, skiprows=5)[::-1]
