@@ -35,7 +35,7 @@ struct Deposits {
   double deviation() const { return relativeDeviation(on_map, in_3d); }
 };
 
-TEST(ColumnIn3d, LowColumnsRunOutAlikeAndTallOnesLess) {
+TEST(ColumnIn3d, LowColumnsComeToRestMoreAlikeThanTallOnes) {
   const Deposits low(0.2);
   const Deposits tall(0.8);
   EXPECT_NEAR(low.runout(low.on_map), low.runout(low.in_3d), 0.1 * low.runout(low.in_3d));
