@@ -74,22 +74,16 @@ void MaterialPoints::fill(const std::vector<double>& depth) {
   }
 }
 
-void MaterialPoints::setVelocity(const Eigen::Vector3d& velocity) {
-  for (Point& point : points_) point.velocity = velocity;
-}
-
-void MaterialPoints::move(const Eigen::Vector3d& way) {
-  for (Point& point : points_) point.position += way;
+void MaterialPoints::launch(const Eigen::Vector3d& way, const Eigen::Vector3d& velocity) {
+  for (Point& point : points_) {
+    point.position += way;
+    point.velocity = velocity;
+  }
 }
 
 void MaterialPoints::advance(double duration) {
   const double end = time_ + duration;
-  while (time_ < end) {
-    const double left = end - time_;
-    const double longest = longestStep();
-    step(longest < left ? longest : left);
-    if (longest >= left) time_ = end;
-  }
+  while (time_ < end) step(std::min(longestStep(), end - time_));
 }
 
 double MaterialPoints::longestStep() const {
@@ -123,19 +117,16 @@ void MaterialPoints::sortIntoBlocks() {
 }
 
 void MaterialPoints::transferToGrid(double duration) {
-#pragma omp parallel num_threads(parameters_.threads)
-  {
-#pragma omp for
-    for (std::int64_t n = 0; n < static_cast<std::int64_t>(grid_.size()); ++n)
-      grid_[static_cast<std::size_t>(n)].setZero();
-    for (int colour = 0; colour < 4; ++colour) {
-#pragma omp for collapse(2) schedule(dynamic)
-      for (int bx = colour % 2; bx < blocks_.x(); bx += 2) {
-        for (int by = colour / 2; by < blocks_.y(); by += 2) {
-          const auto block = static_cast<std::size_t>(bx * blocks_.y() + by);
-          for (std::size_t n = block_begin_[block]; n < block_begin_[block + 1]; ++n)
-            scatter(points_[order_[n]], duration);
-        }
+#pragma omp parallel for num_threads(parameters_.threads)
+  for (std::int64_t n = 0; n < static_cast<std::int64_t>(grid_.size()); ++n)
+    grid_[static_cast<std::size_t>(n)].setZero();
+  for (int colour = 0; colour < 4; ++colour) {
+#pragma omp parallel for collapse(2) schedule(dynamic) num_threads(parameters_.threads)
+    for (int bx = colour % 2; bx < blocks_.x(); bx += 2) {
+      for (int by = colour / 2; by < blocks_.y(); by += 2) {
+        const auto block = static_cast<std::size_t>(bx * blocks_.y() + by);
+        for (std::size_t n = block_begin_[block]; n < block_begin_[block + 1]; ++n)
+          scatter(points_[order_[n]], duration);
       }
     }
   }
@@ -244,7 +235,6 @@ void MaterialPoints::deform(Point& point, double duration) const {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(0.5 * (trial + trial.transpose()));
   const Eigen::Matrix3d& axes = solver.eigenvectors();
-
   const Eigen::Array3d elastic = 0.5 * solver.eigenvalues().array().log();
   Eigen::Array3d strain = elastic + point.volume_gain / 3.0;
   const double volumetric = strain.sum();
@@ -293,18 +283,16 @@ double MaterialPoints::elasticEnergy() const {
   return volume_ * sum;
 }
 
-double MaterialPoints::potentialEnergy() const { return -mass() * parameters_.gravity.dot(centre()); }
-
 std::vector<double> MaterialPoints::depth() const {
   const int columns = parameters_.cells.x();
   std::vector<double> result(static_cast<std::size_t>(columns * parameters_.cells.y()), 0.0);
   for (const Point& point : points_) {
-    const int i = std::min(static_cast<int>(point.position.x() / parameters_.spacing), columns - 1);
-    const int j =
-        std::min(static_cast<int>(point.position.y() / parameters_.spacing), parameters_.cells.y() - 1);
-    result[static_cast<std::size_t>(j * columns + i)] +=
-        volume_ / (parameters_.spacing * parameters_.spacing);
+    const Eigen::Array2d place = point.position.head<2>().array() / parameters_.spacing;
+    const Eigen::Array2i cell = place.cast<int>().min(parameters_.cells.head<2>().array() - 1);
+    result[static_cast<std::size_t>(cell.y() * columns + cell.x())] += volume_;
   }
+  const double area = parameters_.spacing * parameters_.spacing;
+  for (double& column : result) column /= area;
   return result;
 }
 

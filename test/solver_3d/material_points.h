@@ -32,11 +32,8 @@ class MaterialPoints {
   /// Puts sand on the floor, at rest and unstressed, eight points to a cell: of each column of cells,
   /// row-major as in Fields, as deep as told [m], to a quarter of a cell.
   void fill(const std::vector<double>& depth);
-  /// Gives all sand the same velocity [m/s].
-  void setVelocity(const Eigen::Vector3d& velocity);
-  /// Moves all sand [m]; it must stay within the box.
-  void move(const Eigen::Vector3d& way);
-
+  /// Moves all sand by `way` [m], to where it must be within the box, and gives it a velocity [m/s].
+  void launch(const Eigen::Vector3d& way, const Eigen::Vector3d& velocity);
   /// Runs on by `duration` [s] exactly.
   void advance(double duration);
 
@@ -48,9 +45,11 @@ class MaterialPoints {
   Eigen::Vector3d centre() const;                                      ///< of mass [m]
   /// What floor, walls and ceiling have given to the sand since the start. [kg m/s]
   const Eigen::Vector3d& impulse() const { return impulse_; }
-  double kineticEnergy() const;    ///< [J]
-  double elasticEnergy() const;    ///< [J]
-  double potentialEnergy() const;  ///< of the centre of mass above the floor [J]
+  double kineticEnergy() const;  ///< [J]
+  double elasticEnergy() const;  ///< [J]
+  double potentialEnergy() const {
+    return -mass() * parameters_.gravity.dot(centre());
+  }  ///< of the centre of mass above the floor [J]
   /// Volume of the sand above each column of cells, had it the density of sand at rest, by the column's area;
   /// row-major. [m]
   std::vector<double> depth() const;

@@ -62,8 +62,7 @@ TEST(MaterialPoints, FallFreelyAndKeepTheirMomentum) {
   }));
   std::uniform_real_distribution<double> draw(-0.2, 0.2);
   const Eigen::Vector3d velocity(draw(random), draw(random), draw(random));
-  sand.move({0.0, 0.0, 0.8});
-  sand.setVelocity(velocity);
+  sand.launch({0.0, 0.0, 0.8}, velocity);
   const Eigen::Vector3d start = sand.centre();
   const double duration = 0.35;
   sand.advance(duration);
@@ -85,7 +84,7 @@ TEST(MaterialPoints, MomentumIsWhatGravityAndTheBoxGave) {
     const MaterialPointParameters box = boxOf(12, 10, 12);
     MaterialPoints sand(box);
     sand.fill(randomBlock(box, random));
-    sand.setVelocity({1.0, -0.5, 0.3});
+    sand.launch(Eigen::Vector3d::Zero(), {1.0, -0.5, 0.3});
     const Eigen::Vector3d start = sand.momentum();
     sand.advance(0.5);
     const Eigen::Vector3d pulled = 0.5 * sand.mass() * Eigen::Vector3d(0.0, 0.0, -kGravity);
@@ -156,7 +155,7 @@ TEST(MaterialPoints, FloorSlowsSlidingSandByItsFriction) {
   sand.fill(depthsOf(box, [&](int i, int) { return i >= 2 && i < 14 ? 0.05 : 0.0; }));
   constexpr double kSpeed = 2.0;
   constexpr double kDuration = 0.2;
-  sand.setVelocity({kSpeed, 0.0, 0.0});
+  sand.launch(Eigen::Vector3d::Zero(), {kSpeed, 0.0, 0.0});
   sand.advance(kDuration);
   const double slowed = kSpeed - sand.momentum().x() / sand.mass();
   const double expected = std::tan(box.friction_angle) * kGravity * kDuration;
@@ -168,8 +167,7 @@ TEST(MaterialPoints, SandThatFellAndSplashedSettlesOnItsOldVolume) {
   const MaterialPointParameters box = boxOf(12, 4, 30);
   MaterialPoints sand(box);
   sand.fill(depthsOf(box, [&](int i, int) { return i < 4 ? 0.6 : 0.0; }));
-  sand.move({0.2, 0.0, 0.8});
-  sand.setVelocity({0.0, 0.0, -1.0});
+  sand.launch({0.2, 0.0, 0.8}, {0.0, 0.0, -1.0});
   sand.advance(1.2);
   EXPECT_LT(sand.kineticEnergy(), 1e-3 * sand.potentialEnergy());
   double moment = 0.0;
