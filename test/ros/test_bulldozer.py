@@ -7,7 +7,7 @@ import rospy
 import rostest
 from shallow_sand.msg import Status
 from std_msgs.msg import Float64
-from wheel_tracks import by_rows, ground, height_field
+from wheel_tracks import KeptUp, by_rows, ground, height_field
 
 LANE = 8.0  # m, y of the middle of the pass
 BEGIN, END = 5.5, 8.2  # m, x that the blade comes from and leaves its heap before, as in one_pass.yaml
@@ -30,8 +30,10 @@ class Bulldozer(unittest.TestCase):
     def test_level_and_volumes(self):
         self.wait_for(1)
         before = height_field()
+        kept_up = KeptUp()
         self.wait_for(2)
         after = height_field()
+        kept_up.require(self)
         x = before.origin_x + before.spacing * (numpy.arange(before.columns) + 0.5)
         y = (before.origin_y + before.spacing * (numpy.arange(before.rows) + 0.5))[:, None]
         worked = (x > BEGIN) & (x < END) & (numpy.abs(y - LANE) < WITHIN)

@@ -6,7 +6,7 @@ import numpy
 import rospy
 import rostest
 from shallow_sand.msg import Status
-from wheel_tracks import WheelTracks, dilated, ground, height_field
+from wheel_tracks import KeptUp, WheelTracks, dilated, ground, height_field
 
 WHEELS = [f"wheel_{row}_{side}" for row in ("front", "middle", "rear") for side in ("left", "right")]
 WIDTH, SINKAGE = 0.30, 0.06  # m, of wheels, as in config/rover/make_rover.py
@@ -16,9 +16,11 @@ ENDS = 0.45  # m; a wheel is longer than this where it touches the ground
 class Rover(unittest.TestCase):
     def test_tracks(self):
         before = height_field()
+        kept_up = KeptUp()
         tracks = WheelTracks(WHEELS)
         after = tracks.sand_after(4.5, 20.0)
         status = rospy.wait_for_message("/sand_node/status", Status, timeout=10.0)
+        kept_up.require(self)
         drop = ground(before) - ground(after)
         covered, at_ends = tracks.cells(after, WIDTH, ENDS)
         away = ~dilated(covered | at_ends, 8)

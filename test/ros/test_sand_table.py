@@ -6,7 +6,7 @@ import numpy
 import rospy
 import rostest
 from shallow_sand.msg import Status
-from wheel_tracks import WheelTracks, dilated, ground, height_field
+from wheel_tracks import KeptUp, WheelTracks, dilated, ground, height_field
 
 WHEELS = [f"{car}_wheel_{name}" for car in ("red", "blue") for name in ("front_left", "front_right", "rear_left", "rear_right")]
 WIDTH, SINKAGE = 0.05, 0.015  # m, of wheels, as in config/sand_table/make_cars.py
@@ -16,9 +16,11 @@ ENDS = 0.12  # m; a wheel is longer than this where it touches the sand
 class SandTable(unittest.TestCase):
     def test_ruts(self):
         before = height_field()
+        kept_up = KeptUp()
         tracks = WheelTracks(WHEELS)
         after = tracks.sand_after(0.8, 20.0)
         status = rospy.wait_for_message("/sand_node/status", Status, timeout=10.0)
+        kept_up.require(self)
         drop = ground(before) - ground(after)
         covered, at_ends = tracks.cells(after, WIDTH, ENDS)
         self.assertGreater(covered.sum(), 500)

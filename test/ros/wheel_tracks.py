@@ -2,7 +2,7 @@
 import numpy
 import rospy
 import tf2_ros
-from shallow_sand.msg import HeightField
+from shallow_sand.msg import HeightField, Status
 
 
 def height_field(since=0.0, limit=10.0):
@@ -35,6 +35,22 @@ def dilated(mask, cells):
         mask[:, 1:] |= grown[:, :-1]
         mask[:, :-1] |= grown[:, 1:]
     return mask
+
+
+class KeptUp:
+    """Whether the sand has left out no time since this was made: else bodies have leapt, and what they left does not tell of the sand."""
+
+    def __init__(self):
+        self.given_up = self.now()
+
+    @staticmethod
+    def now():
+        return rospy.wait_for_message("/sand_node/status", Status, timeout=10.0).time_given_up
+
+    def require(self, test):
+        given_up = self.now() - self.given_up
+        if given_up > 0.0:
+            test.skipTest("the machine was held up: %g s of sand were left out" % given_up)
 
 
 class WheelTracks:
