@@ -89,7 +89,8 @@ INSTANTIATE_TEST_SUITE_P(OfScenes, ScenePictures,
                                          ScenePicture{"cone_at_rest", 0.5, 0.15},
                                          ScenePicture{"fan", 2.6, 0.25}, ScenePicture{"mixing", 2.6, 0.2},
                                          ScenePicture{"pile", 3.0, 0.05}, ScenePicture{"terrain", 3.0, 0.1},
-                                         ScenePicture{"three_shapes", 4.5, 0.25}),
+                                         ScenePicture{"three_shapes", 4.5, 0.25},
+                                         ScenePicture{"writing", 4.0, 0.25}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
