@@ -20,13 +20,16 @@ VIEWS = {
     "scenes/butterfly": {"focus": (1.28, 1.28, 0.2), "distance": 3.3, "pitch": 0.95, "yaw": -1.57},
     "scenes/cone_at_rest": {"focus": (2.0, 2.0, 0.25), "distance": 4.2, "pitch": 0.5, "yaw": 0.8},
     "scenes/fan": {"focus": (1.28, 1.28, 0.1), "distance": 3.3, "pitch": 0.75, "yaw": 0.4},
+    "scenes/grains_coarse": {"focus": (1.28, 0.64, 0.2), "distance": 2.4, "pitch": 0.9, "yaw": -1.57, "grains": True},
     "scenes/grains_fine": {"focus": (1.28, 0.64, 0.2), "distance": 2.4, "pitch": 0.9, "yaw": -1.57, "grains": True},
+    "scenes/grains_medium": {"focus": (1.28, 0.64, 0.2), "distance": 2.4, "pitch": 0.9, "yaw": -1.57, "grains": True},
     "scenes/layers": {"focus": (2.56, 2.56, 0.3), "distance": 6.4, "pitch": 0.7, "yaw": -0.9},
     # Grains lie in the sand, below its surface.
     "scenes/mixing": {"focus": (1.28, 1.28, 0.1), "distance": 3.3, "pitch": 0.9, "yaw": 0.4, "grains": True},
     "scenes/pile": {"focus": (0.0, 0.0, 0.12), "distance": 2.6, "pitch": 0.5, "yaw": 0.9},
     "scenes/piles": {"focus": (1.28, 1.28, 0.1), "distance": 3.3, "pitch": 0.6, "yaw": -1.2},
     "scenes/pressed_block": {"focus": (0.8, 0.8, 0.3), "distance": 1.9, "pitch": 0.7, "yaw": 0.6},
+    "scenes/pressed_block_flat": {"focus": (0.8, 0.8, 0.3), "distance": 1.9, "pitch": 0.7, "yaw": 0.6},
     "scenes/terrain": {"focus": (3.8, 3.0, 0.2), "distance": 8.0, "pitch": 0.8, "yaw": -1.15},
     "scenes/three_shapes": {"focus": (2.2, 2.56, 0.0), "distance": 5.6, "pitch": 0.8, "yaw": 0.3},
     # From above, so that one can write.

@@ -33,7 +33,11 @@ AddBody::Request requestFor(const std::string& sand_node, const PaintingStick::S
 
 PaintingStick::PaintingStick(ros::NodeHandle node, const std::string& sand_node, const std::string& frame,
                              const Shape& shape, const Ogre::Vector3& tip)
-    : sand_node_(sand_node), body_(requestFor(sand_node, shape)), frame_(frame), tip_(tip) {
+    : sand_node_(sand_node),
+      body_(requestFor(sand_node, shape)),
+      frame_(frame),
+      tip_(tip),
+      advanced_(ros::Time::now()) {
   publisher_ = node.advertise<geometry_msgs::PoseStamped>(body_.pose_topic, 100);
   body_.pose_topic = publisher_.getTopic();
   adding_ = answerLater([service = sand_node_ + "/add_body", request = body_] {
@@ -101,7 +105,10 @@ void PaintingStick::publish(const ros::Time& stamp) {
 std::future<NodeAnswer> PaintingStick::remove() {
   return answerLater([adding = std::move(adding_), service = sand_node_ + "/remove_body",
                       name = body_.name]() mutable -> NodeAnswer {
-    if (adding.valid()) adding.wait();
+    if (adding.valid()) {
+      const NodeAnswer added = adding.get();
+      if (!added.success) return added;
+    }
     RemoveBody body;
     body.request.name = name;
     return askNode(service, body);

@@ -101,11 +101,11 @@ class Painting : public testing::Test {
     std::sort(all.begin(), all.end());
     return all;
   }
-  /// But for the ends, where walls slide in from three sides.
+  /// Along its middle, and not at the ends: the walls slide in.
   std::vector<float> dropsAlong(const Stroke& stroke) const {
     const float end = 2.0f * kRadius / stroke.length();
     const Stroke middle{stroke.at(end), stroke.at(1.0f - end)};
-    return drops([&](const Ogre::Vector2& place) { return middle.distance(place) < 0.5f * kRadius; });
+    return drops([&](const Ogre::Vector2& place) { return middle.distance(place) < 0.25f * kRadius; });
   }
   ::testing::AssertionResult isDrawn(const Stroke& stroke) const {
     const bool drawn = window->runUntil([&] { return dropsAlong(stroke).front() > 0.5f * kDepth; }, 20.0);
@@ -179,7 +179,7 @@ TEST_F(Painting, AStickGoesWhereTheMouseGoes) {
   window->picture().save(PICTURES "painted.png");
   for (const Stroke& one : {drawn, flick}) {
     const std::vector<float> along = dropsAlong(one);
-    EXPECT_NEAR(along[along.size() / 2], kDepth, map_.spacing / 2.0f);
+    EXPECT_GT(along.front(), kDepth - map_.spacing / 2.0f);
     EXPECT_LT(along.back(), kDepth + map_.spacing / 2.0f);
   }
   const std::vector<float> elsewhere = drops([&](const Ogre::Vector2& place) {
