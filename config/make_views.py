@@ -17,16 +17,28 @@ VIEWS = {
     "robots/zx120": {"focus": (2.8, 1.2, 0.8), "distance": 14.0, "pitch": 0.55, "yaw": 0.85, "robot": "collision"},
     "robots/leo": {"focus": (1.2, 0.25, 0.0), "distance": 2.6, "pitch": 0.6, "yaw": -2.2, "robot": "visual"},
     "robots/anymal": {"focus": (0.2, 0.0, 0.15), "distance": 2.6, "pitch": 0.4, "yaw": 0.9, "robot": "visual"},
+    "scenes/avalanche": {"focus": (1280.0, 1280.0, 300.0), "distance": 3600.0, "pitch": 0.95, "yaw": 1.57},
     "scenes/blade": {"focus": (1.7, 1.0, 0.1), "distance": 3.6, "pitch": 0.6, "yaw": 0.55},
     "scenes/bucket": {"focus": (0.85, 0.8, 0.15), "distance": 1.7, "pitch": 1.0, "yaw": -2.3},
     "scenes/buried_plate": {"focus": (1.0, 0.6, 0.25), "distance": 2.0, "pitch": 0.6, "yaw": 0.55, "contours": 0.01},
+    "scenes/butterfly": {"focus": (1.28, 1.28, 0.2), "distance": 3.6, "pitch": 0.95, "yaw": -1.57},
     "scenes/cone_at_rest": {"focus": (2.0, 2.0, 0.25), "distance": 4.2, "pitch": 0.5, "yaw": 0.8},
     "scenes/fan": {"focus": (1.28, 1.28, 0.1), "distance": 3.3, "pitch": 0.75, "yaw": 0.4},
+    "scenes/grains_coarse": {"focus": (1.28, 0.64, 0.2), "distance": 2.7, "pitch": 0.9, "yaw": -1.57, "grains": True},
+    "scenes/grains_fine": {"focus": (1.28, 0.64, 0.2), "distance": 2.7, "pitch": 0.9, "yaw": -1.57, "grains": True},
+    "scenes/grains_medium": {"focus": (1.28, 0.64, 0.2), "distance": 2.7, "pitch": 0.9, "yaw": -1.57, "grains": True},
+    "scenes/layers": {"focus": (2.56, 2.56, 0.3), "distance": 9.0, "pitch": 1.0, "yaw": 0.0},
     # Grains lie in the sand, below its surface.
     "scenes/mixing": {"focus": (1.28, 1.28, 0.1), "distance": 3.3, "pitch": 0.9, "yaw": 0.4, "grains": True},
     "scenes/pile": {"focus": (0.0, 0.0, 0.12), "distance": 2.6, "pitch": 0.5, "yaw": 0.9},
+    "scenes/piles": {"focus": (1.28, 1.28, 0.1), "distance": 3.9, "pitch": 0.6, "yaw": -1.2},
+    "scenes/pressed_block": {"focus": (0.8, 0.8, 0.3), "distance": 2.8, "pitch": 0.7, "yaw": 0.6},
+    "scenes/pressed_block_flat": {"focus": (0.8, 0.8, 0.3), "distance": 2.8, "pitch": 0.7, "yaw": 0.6},
+    "scenes/tall_column": {"focus": (0.64, 0.64, 0.1), "distance": 2.0, "pitch": 0.5, "yaw": 0.6},
     "scenes/terrain": {"focus": (3.8, 3.0, 0.2), "distance": 8.0, "pitch": 0.8, "yaw": -1.15},
     "scenes/three_shapes": {"focus": (2.2, 2.56, 0.0), "distance": 5.6, "pitch": 0.8, "yaw": 0.3},
+    # From above, so that one can write.
+    "scenes/writing": {"focus": (2.56, 1.28, 0.15), "distance": 5.0, "pitch": 1.4, "yaw": -1.5708, "paint": True},
 }
 
 
@@ -56,10 +68,11 @@ def displays(view):
     return shown
 
 
-def tools():
+def tools(view):
+    paint = [{"Class": "shallow_sand/PaintSand", "Radius": 0.05, "Depth": 0.02, "Speed": 2}] if view.get("paint", False) else []
     return [{"Class": "rviz/MoveCamera"}, {"Class": "rviz/Interact", "Hide Inactive Objects": True}, {"Class": "rviz/FocusCamera"},
             {"Class": "rviz/Measure"}, {"Class": "shallow_sand/PourSand", "Radius": 0.1, "Rate": 0.02},
-            {"Class": "shallow_sand/PlaceBlade", "Width": 0.6, "Height": 0.3, "Thickness": 0.04, "Depth": 0.08}]
+            {"Class": "shallow_sand/PlaceBlade", "Width": 0.6, "Height": 0.3, "Thickness": 0.04, "Depth": 0.08}, *paint]
 
 
 def camera(view):
@@ -76,7 +89,7 @@ def config(view):
         "Panels": [{"Class": "rviz/Displays", "Name": "Displays"}, {"Class": "rviz/Views", "Name": "Views"},
                    {"Class": "rviz/Tool Properties", "Name": "Tool Properties"}],
         "Visualization Manager": {
-            "Class": "", "Displays": displays(view), "Tools": tools(), "Value": True, "Views": {"Current": camera(view), "Saved": None},
+            "Class": "", "Displays": displays(view), "Tools": tools(view), "Value": True, "Views": {"Current": camera(view), "Saved": None},
             "Global Options": {"Background Color": view.get("background", "188; 204; 216"), "Default Light": True, "Fixed Frame": "sand",
                                "Frame Rate": 30}},
         "Window Geometry": {

@@ -1,16 +1,12 @@
 #include "shallow_sand/rviz/blade_tool.h"
 
-#include <ros/service.h>
 #include <rviz/display_context.h>
 #include <rviz/load_resource.h>
 #include <rviz/properties/float_property.h>
 #include <rviz/viewport_mouse_event.h>
 
-#include <chrono>
 #include <cmath>
 #include <pluginlib/class_list_macros.hpp>
-#include <thread>
-#include <utility>
 
 namespace shallow_sand {
 namespace {
@@ -19,13 +15,6 @@ rviz::FloatProperty* length(const char* name, float value, const char* descripti
   auto* property = new rviz::FloatProperty(name, value, description, parent);
   property->setMin(0.001f);
   return property;
-}
-
-/// Waits for the node, so not to be called where rviz draws.
-std::string call(const std::string& service, AddBody body) {
-  if (!ros::service::call(service, body)) return service + " does not answer";
-  return body.response.success ? body.request.name + " is in the sand; drag it by its handle"
-                               : body.response.message;
 }
 
 }  // namespace
@@ -58,11 +47,9 @@ int BladeTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
     return 0;
   }
   setStatus("The blade is on its way.");
-  std::packaged_task<std::string()> task([service = target->display->nodeName() + "/add_body",
-                                          body = requestAt(*target)] { return call(service, body); });
-  answer_ = task.get_future();
-  // rviz may end, or this tool, while a node that hangs does not answer.
-  std::thread(std::move(task)).detach();
+  answer_ = answerLater([service = target->display->nodeName() + "/add_body", body = requestAt(*target)] {
+    return askNode(service, body);
+  });
   return Render;
 }
 
@@ -91,8 +78,10 @@ AddBody BladeTool::requestAt(const SandUnderMouse& target) {
 }
 
 void BladeTool::update(float /*wall_dt*/, float /*ros_dt*/) {
-  if (!answer_.valid() || answer_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-  setStatus(QString::fromStdString(answer_.get()));
+  if (!hasCome(answer_)) return;
+  const NodeAnswer answer = answer_.get();
+  setStatus(answer.success ? "The blade is in the sand; drag it by its handle."
+                           : QString::fromStdString(answer.message));
 }
 
 }  // namespace shallow_sand

@@ -173,7 +173,7 @@ void HeightFieldDisplay::startAnew(const HeightField& map) {
 }
 
 void HeightFieldDisplay::update(float wall_dt, float /*ros_dt*/) {
-  const HeightField* map = subscriber_ ? subscriber_->field() : nullptr;
+  const HeightField* map = field();
   if (visual_ && map != nullptr && place() && changed_) {
     changed_ = false;
     showRange(*map);
@@ -265,7 +265,7 @@ void HeightFieldDisplay::changeColorBy() {
   auto_range_->setHidden(what == ColorBy::sand);
   visual_->material().setColorBy(what, low_->getFloat(), high_->getFloat());
   changeRange();
-  const HeightField* map = subscriber_ ? subscriber_->field() : nullptr;
+  const HeightField* map = field();
   if (map == nullptr) return;
   if (what == ColorBy::speed && map->speed.empty()) {
     setStatus(rviz::StatusProperty::Warn, "Color By", "the node publishes no speed: set its ~publish_speed");
@@ -292,7 +292,7 @@ void HeightFieldDisplay::changeShape() {
   visual_->material().setAlpha(alpha_->getFloat());
   visual_->material().showSand(show_sand_->getBool());
   visual_->showSides(sides_->getBool());
-  const HeightField* map = subscriber_ ? subscriber_->field() : nullptr;
+  const HeightField* map = field();
   if (map != nullptr) visual_->setMostTriangles(*map, mostTriangles(most_triangles_->getInt()));
   context_->queueRender();
 }
@@ -303,12 +303,12 @@ std::string HeightFieldDisplay::nodeName() const {
 }
 
 std::string HeightFieldDisplay::mapFrame() const {
-  const HeightField* map = subscriber_ ? subscriber_->field() : nullptr;
+  const HeightField* map = field();
   return map == nullptr ? std::string() : map->header.frame_id;
 }
 
 std::optional<SandPlace> HeightFieldDisplay::meet(const Ogre::Ray& ray) const {
-  const HeightField* map = subscriber_ ? subscriber_->field() : nullptr;
+  const HeightField* map = field();
   if (map == nullptr) return std::nullopt;
   const Ogre::Quaternion to_map = orientation_.Inverse();
   const Ogre::Ray in_map(to_map * (ray.getOrigin() - position_), to_map * ray.getDirection());

@@ -26,7 +26,8 @@ Ogre::AxisAlignedBox boxOf(const HeightField& map) {
   return {corner, corner + size};
 }
 
-/// Bilinear between the centres of cells; beyond the outermost as at them.
+}  // namespace
+
 float elevationAt(const HeightField& map, float x, float y) {
   const auto cellsFrom = [&](float position, double origin, std::uint32_t cells) {
     const float place = (position - static_cast<float>(origin)) / map.spacing - 0.5f;
@@ -44,8 +45,6 @@ float elevationAt(const HeightField& map, float x, float y) {
   return (1.0f - b) * ((1.0f - a) * at(i, j) + a * at(east, j)) +
          b * ((1.0f - a) * at(i, north) + a * at(east, north));
 }
-
-}  // namespace
 
 std::optional<float> meetSand(const HeightField& map, const Ogre::Ray& ray) {
   const Ogre::AxisAlignedBox box = boxOf(map);

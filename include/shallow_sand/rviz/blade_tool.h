@@ -5,9 +5,9 @@
 #include <rviz/tool.h>
 
 #include <future>
-#include <string>
 
 #include "shallow_sand/AddBody.h"
+#include "shallow_sand/rviz/node_answer.h"
 #include "shallow_sand/rviz/sand_under_mouse.h"
 #endif
 
@@ -40,7 +40,7 @@ class BladeTool : public rviz::Tool {
   rviz::FloatProperty* thickness_;
   rviz::FloatProperty* depth_;
   ros::NodeHandle node_;
-  std::future<std::string> answer_;  // in words, of the call that is under way
+  std::future<NodeAnswer> answer_;  // of the call that is under way
 };
 
 }  // namespace shallow_sand

@@ -47,6 +47,8 @@ class HeightFieldDisplay : public rviz::Display {
 
   /// Name of the node whose sand is shown: the topic's up to its last slash.
   std::string nodeName() const;
+  /// The sand that is shown; null as long as there is no map.
+  const HeightField* field() const { return subscriber_ ? subscriber_->field() : nullptr; }
   /// tf frame of the sand; empty as long as there is no map.
   std::string mapFrame() const;
   /// A direction of the scene, in the map's frame.
