@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "shallow_sand/core/one_line.h"
 #include "shallow_sand/ros/queued_call.h"
 
 namespace shallow_sand {
@@ -40,7 +41,7 @@ CallReplay::~CallReplay() { spinner_.stop(); }
 void CallReplay::take(const ServiceCall& message) {
   if (message.request.size() > kLargest || waiting_.size() >= kMostWaiting) {
     ROS_WARN_STREAM_THROTTLE(kTellAgain, subscriber_.getTopic()
-                                             << ": a call of ~" << message.service << " with "
+                                             << ": a call of ~" << oneLine(message.service) << " with "
                                              << message.request.size() << " bytes is refused while "
                                              << waiting_.size() << " others wait; expected at most "
                                              << kLargest << " bytes and " << kMostWaiting << " calls");
@@ -66,7 +67,7 @@ void CallReplay::carryOutDue() {
 void CallReplay::carryOut(const ros::Time& stamp, Call& call) const {
   if (clock_.hasStarted() && stamp < clock_.end()) {
     ROS_WARN_STREAM_THROTTLE(kTellAgain, subscriber_.getTopic()
-                                             << ": a call of ~" << call.service << " came "
+                                             << ": a call of ~" << oneLine(call.service) << " came "
                                              << (clock_.end() - stamp).toSec()
                                              << " s too late and is carried out now, so the sand will be "
                                                 "another; a larger ~tf_delay helps");
@@ -74,8 +75,9 @@ void CallReplay::carryOut(const ros::Time& stamp, Call& call) const {
   try {
     call.change.get()();
   } catch (const std::exception& problem) {
-    ROS_WARN_STREAM_THROTTLE(kTellAgain, subscriber_.getTopic() << ": a call of ~" << call.service
-                                                                << " is refused: " << problem.what());
+    ROS_WARN_STREAM_THROTTLE(kTellAgain, subscriber_.getTopic()
+                                             << ": a call of ~" << oneLine(call.service)
+                                             << " is refused: " << oneLine(problem.what()));
   }
 }
 

@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <type_traits>
 
+#include "shallow_sand/core/nearest_name.h"
 #include "shallow_sand/core/one_line.h"
-#include "shallow_sand/ros/nearest_name.h"
 #include "shallow_sand/ros/parameter_table.h"
 #include "shallow_sand/scene/mesh_file.h"
 #include "shallow_sand/scene/state_folder.h"

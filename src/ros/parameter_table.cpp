@@ -127,8 +127,8 @@ std::vector<ParameterRow> makeTable() {
                        "of the farthest point of a body; a pose that moves faster has jumped")),
       atRunTime(number("pour_rate", &N::pour_rate, kCubicMetresASecond, -1e6, 1e6,
                        "of sand that is poured on a disc as long as the sand runs; below 0: taken away")),
-      atRunTime(number("pour_x", &N::pour_x, kMetres, -1e6, 1e6, "middle of that disc in the sand's frame")),
-      atRunTime(number("pour_y", &N::pour_y, kMetres, -1e6, 1e6, "middle of that disc in the sand's frame")),
+      atRunTime(number("pour_x", &N::pour_x, kMetres, -1e8, 1e8, "middle of that disc in the sand's frame")),
+      atRunTime(number("pour_y", &N::pour_y, kMetres, -1e8, 1e8, "middle of that disc in the sand's frame")),
       atRunTime(number("pour_radius", &N::pour_radius, kMetres, 1e-3, 1e6,
                        "of that disc, at most the grid's longer side")),
   };

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 
+#include "shallow_sand/core/nearest_name.h"
 #include "shallow_sand/scene/scene.h"
 
 namespace shallow_sand {
@@ -35,28 +36,10 @@ std::string listed(const std::vector<std::string>& words) {
                          [](const std::string& list, const std::string& word) { return list + ", " + word; });
 }
 
-/// Levenshtein distance: how many letters to insert, drop or change.
-std::size_t editDistance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0u);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
-}
-
 /// The known key that was probably meant; empty when none is near.
 std::string nearest(const std::string& key, const std::vector<std::string>& known) {
-  const auto best = std::min_element(known.begin(), known.end(), [&key](const auto& a, const auto& b) {
-    return editDistance(key, a) < editDistance(key, b);
-  });
-  return editDistance(key, *best) <= std::max<std::size_t>(2, best->size() / 3) ? *best : std::string();
+  const std::string best = nearestName(key, known);
+  return editDistance(key, best) <= std::max<std::size_t>(2, best.size() / 3) ? best : std::string();
 }
 
 /// Where the value at a path such as "grid.size[0]" stands, or as much of the path as is there.

@@ -7,7 +7,7 @@
 
 #include "random_seed.h"
 #include "shallow_sand/SandConfig.h"
-#include "shallow_sand/ros/nearest_name.h"
+#include "shallow_sand/core/nearest_name.h"
 #include "shallow_sand/ros/parameter_table.h"
 #include "shallow_sand/scene/scene.h"
 

@@ -1,13 +1,11 @@
-#include "shallow_sand/ros/nearest_name.h"
+#include "shallow_sand/core/nearest_name.h"
 
 #include <algorithm>
 #include <numeric>
 
 namespace shallow_sand {
-namespace {
 
-/// Levenshtein's distance, row by row.
-std::size_t changesBetween(const std::string& from, const std::string& to) {
+std::size_t editDistance(const std::string& from, const std::string& to) {
   std::vector<std::size_t> before(to.size() + 1);
   std::iota(before.begin(), before.end(), std::size_t{0});
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -21,11 +19,9 @@ std::size_t changesBetween(const std::string& from, const std::string& to) {
   return before.back();
 }
 
-}  // namespace
-
 std::string nearestName(const std::string& name, const std::vector<std::string>& known) {
   return *std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
-    return changesBetween(name, a) < changesBetween(name, b);
+    return editDistance(name, a) < editDistance(name, b);
   });
 }
 
