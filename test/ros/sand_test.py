@@ -51,7 +51,7 @@ class RunningNode:
     def __enter__(self):
         return self
 
-    def __exit__(self, problem, *_):
+    def __exit__(self, problem=None, *_):
         if self.process.poll() is None:
             self.process.terminate()
         elif problem:
