@@ -12,6 +12,7 @@ import numpy as np
 CONFIG = pathlib.Path(__file__).resolve().parent
 sys.path += [str(CONFIG / "terrain"), str(CONFIG / "robots")]
 import terrain_file  # noqa: E402
+from make_motions import solve  # noqa: E402
 
 MOTIONS = {"x": ("prismatic", (1, 0, 0)), "y": ("prismatic", (0, 1, 0)), "z": ("prismatic", (0, 0, 1)),
            "yaw": ("continuous", (0, 0, 1)), "pitch": ("continuous", (0, 1, 0)), "roll": ("continuous", (1, 0, 0))}
@@ -95,6 +96,16 @@ class Ground:
         """Height of the middle of a wheel that goes so deep into the ground, along its normal."""
         slopes = [(self.height(x + dx, y + dy) - self.height(x - dx, y - dy)) / (2 * radius) for dx, dy in ((radius, 0), (0, radius))]
         return self.height(x, y) + (radius - sinkage) * np.sqrt(1 + slopes[0] ** 2 + slopes[1] ** 2)
+
+    def settled(self, robot, wheels, joints, free, radius, sinkage):
+        """Free joints near `free` with which all wheels (links) go so deep into the ground. @param joints all of them, from free ones"""
+
+        def residual(trial):
+            """the wheels' depth"""
+            middles = [robot.frame(wheel, joints(trial))[:3, 3] for wheel in wheels]
+            return [middle[2] - self.centre(*middle[:2], radius, sinkage) for middle in middles]
+
+        return solve(free, residual)
 
 
 def ease(share):

@@ -15,7 +15,7 @@ import numpy as np
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.append(str(HERE.parent))
 from vehicles import Description, Ground, along, box, cylinder, ease, wheel, write_motion  # noqa: E402
-from make_motions import Robot, solve  # noqa: E402
+from make_motions import Robot  # noqa: E402
 
 RADIUS, WIDTH, SINKAGE = 0.26, 0.30, 0.06  # m
 HALF_TRACK = 0.95  # m
@@ -110,12 +110,7 @@ def drive(robot, ground, times):
             rockers = {f"rocker_{side}": left * trial["differential"] for side, left in SIDES.items()}
             return {**steered, **rockers, **{name: value for name, value in trial.items() if name != "differential"}}
 
-        def residual(trial):
-            """the wheels' depth"""
-            middles = [robot.frame(f"wheel_{row}_{side}", joints(trial))[:3, 3] for side in SIDES for row in AHEAD]
-            return [middle[2] - ground.centre(*middle[:2], RADIUS, SINKAGE) for middle in middles]
-
-        free = solve(free, residual)
+        free = ground.settled(robot, [f"wheel_{row}_{side}" for side in SIDES for row in AHEAD], joints, free, RADIUS, SINKAGE)
         rows.append(joints(free))
         before = way
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}

@@ -15,7 +15,7 @@ import numpy as np
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.append(str(HERE.parent))
 from vehicles import Description, Ground, along, box, cylinder, ease, wheel, write_motion  # noqa: E402
-from make_motions import Robot, solve  # noqa: E402
+from make_motions import Robot  # noqa: E402
 
 HALF_BASE, HALF_TRACK = 0.17, 0.145  # m from the car's middle to its wheels
 RADIUS, WIDTH = 0.075, 0.05  # m, of wheels
@@ -86,12 +86,7 @@ def drive(robot, ground, car, path, times):
             springs = {f"{car}_spring_{name}": ahead * left * trial["twist"] for name, (ahead, left) in WHEELS.items()}
             return {**steered, **springs, **{name: value for name, value in trial.items() if name != "twist"}}
 
-        def residual(trial):
-            """the wheels' depth"""
-            middles = [robot.frame(f"{car}_wheel_{name}", joints(trial))[:3, 3] for name in WHEELS]
-            return [middle[2] - ground.centre(*middle[:2], RADIUS, SINKAGE) for middle in middles]
-
-        free = solve(free, residual)
+        free = ground.settled(robot, [f"{car}_wheel_{name}" for name in WHEELS], joints, free, RADIUS, SINKAGE)
         rows.append(joints(free))
         before = way
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
