@@ -244,8 +244,9 @@ bool SandNode::reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Res
 std::string SandNode::startAnew() {
   bodies_.restore(startOf(parameters_.scene));
   publishStatus();
-  ROS_INFO_STREAM("~reset: the sand is as it was at the start");
-  return "the sand is as it was at the start";
+  const std::string done = "the sand is as it was at the start";
+  ROS_INFO_STREAM("~reset: " << done);
+  return done;
 }
 
 void SandNode::takeParameters() {

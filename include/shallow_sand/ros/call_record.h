@@ -3,6 +3,7 @@
 #include <ros/node_handle.h>
 #include <ros/serialization.h>
 
+#include <any>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -30,6 +31,7 @@ class CallRecord {
   /// @param prepare checks a request of this kind and computes what takes long, in any thread
   template <class Request>
   void know(const std::string& service, std::function<Change(const Request&)> prepare) {
+    preparers_[service] = prepare;
     readers_[service] = [this, service, prepare = std::move(prepare)](const Bytes& bytes) -> Change {
       const Request request = boundedRead<Request>(bytes);
       return [this, service, request, change = prepare(request)] { return make(service, request, change); };
@@ -45,7 +47,8 @@ class CallRecord {
   /// The same for a request of a kind that is known.
   template <class Request>
   std::string make(const std::string& service, const Request& request) const {
-    return prepare(service, write(request))();
+    using Prepare = std::function<Change(const Request&)>;
+    return make(service, request, std::any_cast<const Prepare&>(preparers_.at(service))(request));
   }
   /// Of a request as it was published, in any thread. @throws InvalidParameter if it is of no kind that is
   /// known; std::exception if it cannot be read, or is refused
@@ -66,6 +69,7 @@ class CallRecord {
 
   const FrameClock& clock_;
   std::string sand_frame_;
+  std::map<std::string, std::any> preparers_;  ///< as they were given to know()
   std::map<std::string, std::function<Change(const Bytes&)>> readers_;
   ros::Publisher publisher_;
 };
