@@ -178,6 +178,8 @@ class Soak(unittest.TestCase):
         print("seed", seed)
         rospy.set_param("/robot_description", robot("digger", link("blade")))
         states = tempfile.TemporaryDirectory()
+        # Else each thread that ever asked for much keeps some MB for itself, which would hide a leak.
+        os.environ["MALLOC_ARENA_MAX"] = "1"
         parameters = dict(SCENE, threads=2, state_folder=states.name, snapshot_period=0.5)
         with World({"blade": sweep}) as world, RunningNode("soaked", parameters) as node:
             node.body("blade", lambda body: body.state == body.MOVING)
@@ -198,9 +200,10 @@ class Soak(unittest.TestCase):
             node.assert_well(self)
             print("longest answer %.2f s; resident memory, MB: %s" % (chaos.longest, [m >> 20 for m in memories]))
             self.assertLess(chaos.longest, 10.0 * float(os.environ.get("SLOWER", "1")))
-            # Its first third is spent on getting warm.
-            warm = memories[len(memories) // 3]
-            self.assertLess(memories[-1] - warm, 0.1 * warm + (16 << 20), memories)
+            if "NO_MEMORY_LAW" not in os.environ:
+                # Its first third is spent on getting warm.
+                warm = memories[len(memories) // 3]
+                self.assertLess(memories[-1] - warm, 0.1 * warm + (16 << 20), memories)
 
 
 if __name__ == "__main__":

@@ -143,6 +143,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"spacing: 0.02", "spacing: 20", "1: grid.size[0]: 4;", "at least one cell"},
         Mistake{"spacing: 0.02", "spacing: 0.0001", "1: grid: ", "2^28 cells"},
         Mistake{"gravity:  [0.0, 0.0, -9.81]", "gravity: [0, 0, 9.81]", "2: gravity: ", "negative"},
+        Mistake{"gravity:  [0.0, 0.0, -9.81]", "gravity: [2e4, 0, -9]", "2: gravity: ", "1e4 in size"},
         Mistake{"gravity:  [0.0, 0.0, -9.81]", "gravity: [0, .nan, -9]", "2: gravity[1]: .nan;", "finite"},
         Mistake{"courant: 0.45", "courant: 1", "25: solver.courant: 1;", "between 0 and 1"},
         Mistake{"max_step: 0.01", "max_step: 0", "25: solver.max_step: 0;", "positive"},

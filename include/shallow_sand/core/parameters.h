@@ -135,7 +135,8 @@ struct Pour {
   void validate() const;  ///< @throws InvalidParameter
 };
 
-/// Checks gravity in the grid's frame [m/s²]: finite and pointing below the horizon. @throws InvalidParameter
+/// Checks gravity in the grid's frame [m/s²]: at most 1e4 in size, and pointing below the horizon. @throws
+/// InvalidParameter
 void validateGravity(const Eigen::Vector3d& gravity);
 
 }  // namespace shallow_sand
