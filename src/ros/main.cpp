@@ -2,7 +2,6 @@
 
 #include <iostream>
 
-#include "shallow_sand/device/passive_threads.h"
 #include "shallow_sand/ros/parameter_table.h"
 #include "shallow_sand/ros/sand_node.h"
 
@@ -11,7 +10,6 @@ int main(int argument_count, char** arguments) {
     std::cout << shallow_sand::parameterMarkdown();
     return 0;
   }
-  shallow_sand::waitPassively(arguments);
   ros::init(argument_count, arguments, "sand_node");
   // ROS shuts its log down with the last handle; this one outlives the node, so that its end can be told.
   const ros::NodeHandle handle;

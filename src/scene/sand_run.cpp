@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "shallow_sand/bodies/shape.h"
-#include "shallow_sand/device/passive_threads.h"
 #include "shallow_sand/scene/geotiff.h"
 #include "shallow_sand/scene/mesh_file.h"
 #include "shallow_sand/scene/picture.h"
@@ -203,7 +202,6 @@ int failed(const std::string& message, ExitCode code) {
 }  // namespace
 
 int main(int argument_count, char** arguments) {
-  waitPassively(arguments);
   Options options;
   CLI::App app("Runs a scene of dry sand and the bodies that move in it.", "sand_run");
   declareOptions(app, options);

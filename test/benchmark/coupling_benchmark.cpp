@@ -9,7 +9,6 @@
 #include "benchmark/timing.h"
 #include "shallow_sand/bodies/distance_field.h"
 #include "shallow_sand/core/moved_volume.h"
-#include "shallow_sand/device/passive_threads.h"
 
 /// What bodies add to the cost of a step, and what it costs to ask what they do; see README.md here. The same
 /// sand runs by turns with and without bodies, so that what else a machine does falls on both.
@@ -138,6 +137,5 @@ void registerAll() {
 }  // namespace shallow_sand
 
 int main(int argc, char** argv) {
-  shallow_sand::waitPassively(argv);
   return shallow_sand::runBenchmarks({argv, argv + argc}, shallow_sand::registerAll);
 }

@@ -7,7 +7,6 @@
 #include "benchmark/maps.h"
 #include "benchmark/run_benchmarks.h"
 #include "benchmark/table1.h"
-#include "shallow_sand/device/passive_threads.h"
 #ifdef SHALLOW_SAND_WITH_CUDA
 #include "benchmark/cuda_benchmarks.h"
 #endif
@@ -45,7 +44,6 @@ void registerBenchmarks(Backend backend) {
 }  // namespace
 
 int main(int argument_count, char** arguments) {
-  waitPassively(arguments);
   std::string name = "cpu";
   CLI::App app("Measures how fast the sand is.", "sand_benchmark");
   app.add_option("--backend", name, "cpu (the default) or cuda")->check(CLI::IsMember({"cpu", "cuda"}));

@@ -43,7 +43,7 @@ TEST(WorthOfHelp, AsksAgainAfterALossAndWaitsLongerEachTime) {
   EXPECT_TRUE(worth.ask(now));
   double pause_before = 0.0;
   for (int loss = 0; loss < 5; ++loss) {
-    worth.book(1, 1e-3, 1, 5e-3, now);
+    worth.book(1e-3, 5e-3, now);
     EXPECT_FALSE(worth.ask(now));
     const double begin = now;
     while (!worth.ask(now)) now += 1e-4;
@@ -54,8 +54,8 @@ TEST(WorthOfHelp, AsksAgainAfterALossAndWaitsLongerEachTime) {
 
 TEST(WorthOfHelp, OneSmallLossIsForgivenWhereHelpPaid) {
   WorthOfHelp worth;
-  for (int call = 0; call < 10; ++call) worth.book(1, 1e-3, 1, 0.0, 1.0);
-  worth.book(1, 1e-3, 1, 2e-3, 1.0);
+  for (int call = 0; call < 10; ++call) worth.book(1e-3, 0.0, 1.0);
+  worth.book(1e-3, 2e-3, 1.0);
   EXPECT_TRUE(worth.ask(1.0));
 }
 

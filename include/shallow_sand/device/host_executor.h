@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <memory>
 #include <type_traits>
 #include <vector>
@@ -32,7 +33,7 @@ class FieldMemory {
   void* begin_;
 };
 
-/// Runs functions of a cell on the CPU, rows shared among OpenMP threads, and tasks among helping threads.
+/// Runs functions of a cell on the CPU, rows and tasks shared with helping threads.
 /// Every cell is computed from values that no other cell of the same call writes, so the number of threads
 /// changes no bit.
 class HostExecutor {
@@ -76,12 +77,11 @@ class HostExecutor {
   /// Calls function(part) once for each of `count` uneven parts of the work on a window.
   template <class Function>
   void forEachPart(const Window& window, int count, const Function& function) const {
-    if (threads_ == 1 || window.cells() < 512) {
+    if (window.cells() < 512) {
       for (int part = 0; part < count; ++part) function(part);
       return;
     }
-#pragma omp parallel for num_threads(threads_) schedule(dynamic)
-    for (int part = 0; part < count; ++part) function(part);
+    forEachTask(count, [&](int part, int) { function(part); });
   }
 
   /// Cells of which only some need work.
@@ -179,41 +179,47 @@ class HostExecutor {
     std::vector<Share> shares(threads);
     const auto first = [&](int share) { return static_cast<int>(1LL * count * share / threads); };
     for (int share = 0; share < threads; ++share) shares[share].next = first(share);
-    int done_here = 0;
     double end_here = begin;
     team_->threads.run([&](int thread) {
-      int done = 0;
-      for (int help = 0; help < threads && thread < threads; ++help) {
+      if (thread >= threads) return;
+      const double cpu_begin = thread > 0 ? cpuSeconds() : 0.0;
+      for (int help = 0; help < threads; ++help) {
         const int share = (thread + help) % threads;
         const int end = first(share + 1);
-        for (int task = shares[share].next++; task < end; task = shares[share].next++, ++done)
-          function(task, thread);
+        for (int task = shares[share].next++; task < end; task = shares[share].next++) function(task, thread);
       }
-      if (thread > 0) return;
-      done_here = done;
-      end_here = seconds();
+      if (thread > 0) {
+        shares[thread].helped = cpuSeconds() - cpu_begin;
+      } else {
+        end_here = seconds();
+      }
     });
     const double end = seconds();
-    team_->worth.book(done_here, end_here - begin, count - done_here, end - end_here, end);
+    double helped = 0.0;
+    for (const Share& share : shares) helped += share.helped;
+    team_->worth.book(helped, end - end_here, end);
   }
 
   int threads() const { return threads_; }
 
  private:
-  /// Calls function(j) once for every row, on threads if that is worth it: to wake one takes as long as some
-  /// thousand cells. A team of one thread is no loop, either: OpenMP ends each with a call of the system.
+  /// Calls function(j) once for every row, with help if that may be worth it: to wake a thread takes as long
+  /// as ten thousand cells.
   template <class Function>
   void forEachRow(const Window& window, const Function& function) const {
-    if (threads_ == 1 || window.rows() <= 1 || window.cells() < 4096) {
-      for (int j = window.row_begin; j < window.row_end; ++j) function(j);
-      return;
-    }
-#pragma omp parallel for num_threads(threads_) schedule(static)
-    for (int j = window.row_begin; j < window.row_end; ++j) function(j);
+    constexpr int kCellsOfTask = 8192;
+    const int rows = window.empty() ? 0 : window.rows();
+    const int together = rows == 0 ? 1 : std::max(1, kCellsOfTask / window.columns());
+    forEachTask((rows + together - 1) / together, [&](int task, int) {
+      const int begin = window.row_begin + task * together;
+      const int end = std::min(begin + together, window.row_end);
+      for (int j = begin; j < end; ++j) function(j);
+    });
   }
 
   struct alignas(64) Share {  // a cache line of its own
     std::atomic<int> next{0};
+    double helped = 0.0;  // [s]
   };
 
   struct Team {
@@ -224,6 +230,13 @@ class HostExecutor {
 
   static double seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  }
+
+  /// That the calling thread has used. [s]
+  static double cpuSeconds() {
+    std::timespec time;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
   }
 
   int threads_;

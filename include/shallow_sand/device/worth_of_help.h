@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 
 namespace shallow_sand {
 
@@ -13,16 +12,11 @@ class WorthOfHelp {
   /// @param now [s]
   bool ask(double now) const { return now >= alone_until_; }
 
-  /// The caller did `own` tasks in `working` [s], helpers did `others`, and for these it had to wait [s].
-  void book(int own, double working, int others, double waiting, double now) {
-    // The caller may have lost its core, too; that is no help's fault.
-    if (own > 0) task_ = std::min(1.02 * task_, working / own);
-    if (others > 0 || waiting > 0.0) book(std::min(others * task_, 1.0) - waiting, now);
-  }
-
- private:
-  void book(double saved, double now) {
-    balance_ = std::min(balance_ + saved, kMostCredit);
+  /// @param helped processor time that helpers spent on the caller's tasks [s]: what it would have taken
+  /// itself
+  /// @param waiting time that the caller then waited for them [s]
+  void book(double helped, double waiting, double now) {
+    balance_ = std::min(balance_ + helped - waiting, kMostCredit);
     if (balance_ == kMostCredit) pause_ = std::max(0.9 * pause_, kShortestPause);
     if (balance_ >= 0.0) return;
     balance_ = 0.0;
@@ -30,11 +24,11 @@ class WorthOfHelp {
     pause_ = std::min(2.0 * pause_, kLongestPause);
   }
 
+ private:
   static constexpr double kMostCredit = 4e-3;  // what the loss of a core costs [s]
   static constexpr double kShortestPause = 2e-3;
   static constexpr double kLongestPause = 0.5;
-  double task_ = std::numeric_limits<double>::infinity();  // that a task takes; rather too little [s]
-  double balance_ = 0.0;                                   // time saved lately [s]
+  double balance_ = 0.0;  // time saved lately [s]
   double pause_ = kShortestPause;
   double alone_until_ = 0.0;
 };
