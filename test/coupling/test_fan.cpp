@@ -10,6 +10,7 @@ constexpr double kSpacing = 0.02;
 constexpr int kCells = 128;
 constexpr double kSurface = 0.3;
 constexpr double kCut = 0.1;
+constexpr double kLayer = 10.0 * kSpacing;
 constexpr double kLength = 1.2;  ///< of a pair of blades, tip to tip
 constexpr double kThickness = 0.08;
 constexpr double kHeight = 0.4;
@@ -62,6 +63,7 @@ double asymmetry(const Grid& grid, const Fields& fields) {
 TEST(Fan, DigsAPitAndRaisesARingAlikeInAllQuarters) {
   Scene scene = levelSand({kCells * kSpacing, kCells * kSpacing}, kSpacing, kSurface);
   scene.bodies = {fanOf()};
+  scene.parameters.material.layer_depth = kLayer;
   Simulator simulator = buildSimulator(scene);
   const double most_overlap = runWatchingOverlap(simulator, kDuration, 40);
   const Grid& grid = simulator.grid();

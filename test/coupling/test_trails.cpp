@@ -50,6 +50,7 @@ std::vector<Dragged> threeShapes() {
 
 Scene sceneOf(const std::vector<Dragged>& shapes) {
   Scene scene = levelSand({2.4, 4.8}, kSpacing, kSurface);
+  scene.parameters.material.layer_depth = 10.0 * kSpacing;
   for (const Dragged& dragged : shapes) {
     const Eigen::Vector3d from(kStartX, dragged.y, kSurface - kSunk + dragged.below);
     SceneBody body;

@@ -175,6 +175,65 @@ TEST(PaperScenes, ThickerLayersRunFasterAndFarther) {
   EXPECT_LT(sand.ledger().error(), 1e-6);
 }
 
+/// Depths along the row at y. [m]
+std::vector<float> depthsAlong(const Simulator& sand, const Fields& fields, double y) {
+  const Grid& grid = sand.grid();
+  const auto row = fields.depth.begin() + static_cast<std::ptrdiff_t>(grid.index(
+                                              0, static_cast<int>((y - grid.origin_y) / grid.spacing)));
+  return {row, row + grid.columns};
+}
+
+/// Where sand is last as deep as this. [m]
+double reachOf(const std::vector<float>& depths, double depth, double spacing) {
+  std::size_t end = depths.size();
+  while (end > 0 && depths[end - 1] < depth) --end;
+  return static_cast<double>(end) * spacing;
+}
+
+/// As slices, test/validation compares these flumes with a solution of the equations, whose fronts these are.
+TEST(PaperScenes, FlumesSendTheirFrontsAsFarAsTheEquationsDo) {
+  const Scene scene = sceneNamed("flumes");
+  Simulator sand = buildSimulator(scene);
+  sand.advanceTo(scene.duration);
+  const Fields fields = sand.fields();
+  const std::array<double, 3> lanes{0.87, 0.51, 0.15};
+  const std::array<double, 3> fronts{0.526, 0.578, 0.721};  // 5 cm deep, at 0, 10 and 20 degrees [m]
+  const double spacing = sand.grid().spacing;
+  double runout = 0.4;
+  for (std::size_t k = 0; k < lanes.size(); ++k) {
+    const std::vector<float> depths = depthsAlong(sand, fields, lanes[k]);
+    EXPECT_NEAR(reachOf(depths, 0.05, spacing), fronts[k], 2.0 * spacing) << "flume " << k;
+    EXPECT_GT(reachOf(depths, 0.01, spacing), runout + 0.1) << "flume " << k;
+    runout = reachOf(depths, 0.01, spacing);
+  }
+  EXPECT_EQ(sand.activeCells(), 0u) << "the sand has come to rest";
+  EXPECT_LT(sand.ledger().error(), 1e-6);
+}
+
+/// The paper's figure 12: mean difference of depths above the base, at the time when it is largest.
+TEST(PaperScenes, DamsOnSandOfTwoDepthsDifferLessWhereALayerFlows) {
+  Simulator sand = buildSimulator(sceneNamed("raised_dam_breaks"));
+  const auto difference = [&](const Fields& fields, double shallow, double deep) {
+    const std::vector<float> one = depthsAlong(sand, fields, shallow);
+    const std::vector<float> other = depthsAlong(sand, fields, deep);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < one.size(); ++k) sum += std::abs((one[k] - 0.3) - (other[k] - 1.0));
+    return sum / static_cast<double>(one.size());
+  };
+  double whole = 0.0;
+  double layer = 0.0;
+  for (int frame = 1; frame <= 70; ++frame) {
+    sand.advanceTo(0.01 * frame);
+    const Fields fields = sand.fields();
+    whole = std::max(whole, difference(fields, 0.15, 0.51));
+    layer = std::max(layer, difference(fields, 0.87, 1.23));
+  }
+  std::cout << "largest difference where all flows: " << whole << " m, where 0.2 m flow: " << layer << " m\n";
+  EXPECT_GT(whole, 0.01);
+  EXPECT_LT(layer, 0.5 * whole);
+  EXPECT_LT(sand.ledger().error(), 1e-6);
+}
+
 Eigen::Vector3d centreOfMass(const Simulator& sand, const Fields& fields) {
   const Grid& grid = sand.grid();
   Eigen::Vector3d sum(0.0, 0.0, 0.0);
