@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "fuzz/body_laws.h"
-#include "fuzz/bounded_stream.h"
 #include "fuzz/mesh_addresses.h"
 #include "fuzz/outcome.h"
 #include "shallow_sand/MoveBody.h"
 #include "shallow_sand/StateFile.h"
 #include "shallow_sand/client/height_field_map.h"
 #include "shallow_sand/ros/body_look.h"
+#include "shallow_sand/ros/bounded_stream.h"
 #include "shallow_sand/ros/message_heights.h"
 #include "shallow_sand/ros/poses.h"
 #include "shallow_sand/ros/query_answers.h"
@@ -246,7 +246,7 @@ inline void feedMessages(const std::uint8_t* data, std::size_t size) {
   BoundedStream stream(data, size);
   MessageWorld world;
   try {
-    for (int count = 0; count < kMost && !stream.empty(); ++count) world.take(stream);
+    for (int count = 0; count < kMost && stream.left() > 0; ++count) world.take(stream);
   } catch (const std::out_of_range&) {  // the last one is not whole
   }
   world.finish();

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "shallow_sand/ServiceCall.h"
-#include "shallow_sand/ros/bounded_read.h"
+#include "shallow_sand/ros/bounded_stream.h"
 #include "shallow_sand/ros/frame_clock.h"
 
 namespace shallow_sand {
@@ -33,7 +33,7 @@ class CallRecord {
   void know(const std::string& service, std::function<Change(const Request&)> prepare) {
     preparers_[service] = prepare;
     readers_[service] = [this, service, prepare = std::move(prepare)](const Bytes& bytes) -> Change {
-      const Request request = boundedRead<Request>(bytes);
+      const Request request = readMessage<Request>(bytes);
       return [this, service, request, change = prepare(request)] { return make(service, request, change); };
     };
   }

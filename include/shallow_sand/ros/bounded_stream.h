@@ -9,6 +9,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "shallow_sand/core/parameters.h"
+
 namespace shallow_sand {
 
 /// Reads messages as roscpp does, but allocates nothing for a list before it knows that its items are there.
@@ -23,7 +25,7 @@ class BoundedStream {
     next(message);
     return message;
   }
-  bool empty() const { return left_ == 0; }
+  std::size_t left() const { return left_; }
 
   template <class Value>
   void next(Value& value) {
@@ -57,5 +59,15 @@ class BoundedStream {
   const std::uint8_t* data_;
   std::size_t left_;
 };
+
+/// @throws std::exception if the bytes, which may be anything, are not those of a whole message
+template <class Message>
+Message readMessage(const std::vector<std::uint8_t>& bytes) {
+  BoundedStream stream(bytes.data(), bytes.size());
+  Message message = stream.take<Message>();
+  if (stream.left() == 0) return message;
+  throw InvalidParameter("request", std::to_string(stream.left()) + " bytes too many",
+                         "the message of such a request");
+}
 
 }  // namespace shallow_sand
