@@ -37,6 +37,31 @@ TEST(HelpingThreads, WakeAfterTheySlept) {
   }
 }
 
+/// Windows that fall into many tasks, into some of one row each, and into none.
+TEST(HelpingThreads, ComputeEveryCellOnce) {
+  for (const Window& window :
+       {Window{3, 2, 403, 302}, Window{0, 0, 20000, 9}, Window{5, 0, 6, 9000}, Window{}}) {
+    for (const int threads : {1, 2, 3, 7}) {
+      const HostExecutor executor(threads);
+      constexpr int kAcross = 20000;
+      std::vector<unsigned char> done(window.empty() ? 0 : std::size_t{kAcross} * window.row_end, 0);
+      const auto cell = [&](int i, int j) { return static_cast<std::size_t>(j) * kAcross + i; };
+      const auto count = [&](int i, int j) { done[cell(i, j)] += 1; };
+      executor.forEachCell(window, count);
+      const auto some =
+          executor.cellsWith(window, [](int i, int j) { return (7 * i + 3 * j) % 5 == 0 ? 1.0f : 0.0f; });
+      executor.forEachCell(some, count);
+      for (int j = window.row_begin; j < window.row_end; ++j) {
+        for (int i = window.column_begin; i < window.column_end; ++i)
+          ASSERT_EQ(done[cell(i, j)], (7 * i + 3 * j) % 5 == 0 ? 2 : 1)
+              << i << ", " << j << ", " << threads << " threads";
+      }
+      EXPECT_EQ(executor.maximumOverCells(window, [&](int i, int j) { return static_cast<float>(i + j); }),
+                window.empty() ? 0.0f : static_cast<float>(window.column_end + window.row_end - 2));
+    }
+  }
+}
+
 TEST(WorthOfHelp, AsksAgainAfterALossAndWaitsLongerEachTime) {
   WorthOfHelp worth;
   double now = 1.0;

@@ -33,7 +33,8 @@ class FieldMemory {
   void* begin_;
 };
 
-/// Runs functions of a cell on the CPU, rows and tasks shared with helping threads.
+/// Runs functions of a cell on the CPU, rows and tasks shared with helping threads. One thread at a time may
+/// call it and its copies.
 /// Every cell is computed from values that no other cell of the same call writes, so the number of threads
 /// changes no bit.
 class HostExecutor {
