@@ -172,15 +172,14 @@ class HostExecutor {
   template <class Function>
   void forEachTask(int count, const Function& function) const {
     const int threads = std::min(threads_, count);
-    const double begin = seconds();
-    if (threads <= 1 || !team_->worth.ask(begin)) {
+    if (threads <= 1 || !team_->worth.ask(seconds())) {
       for (int task = 0; task < count; ++task) function(task, 0);
       return;
     }
     std::vector<Share> shares(threads);
     const auto first = [&](int share) { return static_cast<int>(1LL * count * share / threads); };
     for (int share = 0; share < threads; ++share) shares[share].next = first(share);
-    double end_here = begin;
+    double end_here = 0.0;
     team_->threads.run([&](int thread) {
       if (thread >= threads) return;
       const double cpu_begin = thread > 0 ? cpuSeconds() : 0.0;
@@ -209,9 +208,9 @@ class HostExecutor {
   template <class Function>
   void forEachRow(const Window& window, const Function& function) const {
     constexpr int kCellsOfTask = 8192;
-    const int rows = window.empty() ? 0 : window.rows();
-    const int together = rows == 0 ? 1 : std::max(1, kCellsOfTask / window.columns());
-    forEachTask((rows + together - 1) / together, [&](int task, int) {
+    if (window.empty()) return;
+    const int together = std::max(1, kCellsOfTask / window.columns());
+    forEachTask((window.rows() + together - 1) / together, [&](int task, int) {
       const int begin = window.row_begin + task * together;
       const int end = std::min(begin + together, window.row_end);
       for (int j = begin; j < end; ++j) function(j);
