@@ -9,6 +9,7 @@
 #include "shallow_sand/scene/simulation.h"
 #include "shallow_sand/surface/surface_mesh.h"
 #include "surface_profile.h"
+#include "validation/profile.h"
 
 namespace shallow_sand {
 namespace {
@@ -145,15 +146,16 @@ TEST(PaperScenes, PressedBlockRaisesABermByItsVerticalMotion) {
   }
 }
 
-/// Where the sand of a row ends. [m]
-double frontOf(const Simulator& sand, const Fields& fields, double y) {
+/// Along the row at y.
+Profile profileAlong(const Simulator& sand, const Fields& fields, double y) {
   const Grid& grid = sand.grid();
   const int row = static_cast<int>((y - grid.origin_y) / grid.spacing);
-  int last = 0;
+  Profile profile;
   for (int i = 0; i < grid.columns; ++i) {
-    if (fields.depth[grid.index(i, row)] > 0.5 * grid.spacing) last = i;
+    profile.x.push_back(grid.x(i));
+    profile.depth.push_back(fields.depth[grid.index(i, row)]);
   }
-  return grid.x(last);
+  return profile;
 }
 
 TEST(PaperScenes, ThickerLayersRunFasterAndFarther) {
@@ -165,7 +167,7 @@ TEST(PaperScenes, ThickerLayersRunFasterAndFarther) {
     const Fields fields = sand.fields();
     std::array<double, 3> fronts{};
     for (std::size_t k = 0; k < lanes.size(); ++k) {
-      fronts[k] = frontOf(sand, fields, lanes[k]);
+      fronts[k] = profileAlong(sand, fields, lanes[k]).reach(0.5 * sand.grid().spacing);
       std::cout << time << " s, lane " << k << ": front at " << fronts[k] << " m\n";
     }
     EXPECT_GT(fronts[1], fronts[0] + 0.1);
@@ -173,21 +175,6 @@ TEST(PaperScenes, ThickerLayersRunFasterAndFarther) {
   }
   EXPECT_EQ(sand.activeCells(), 0u) << "the sand has come to rest";
   EXPECT_LT(sand.ledger().error(), 1e-6);
-}
-
-/// Depths along the row at y. [m]
-std::vector<float> depthsAlong(const Simulator& sand, const Fields& fields, double y) {
-  const Grid& grid = sand.grid();
-  const auto row = fields.depth.begin() + static_cast<std::ptrdiff_t>(grid.index(
-                                              0, static_cast<int>((y - grid.origin_y) / grid.spacing)));
-  return {row, row + grid.columns};
-}
-
-/// Where sand is last as deep as this. [m]
-double reachOf(const std::vector<float>& depths, double depth, double spacing) {
-  std::size_t end = depths.size();
-  while (end > 0 && depths[end - 1] < depth) --end;
-  return static_cast<double>(end) * spacing;
 }
 
 /// As slices, test/validation compares these flumes with a solution of the equations, whose fronts these are.
@@ -201,10 +188,10 @@ TEST(PaperScenes, FlumesSendTheirFrontsAsFarAsTheEquationsDo) {
   const double spacing = sand.grid().spacing;
   double runout = 0.4;
   for (std::size_t k = 0; k < lanes.size(); ++k) {
-    const std::vector<float> depths = depthsAlong(sand, fields, lanes[k]);
-    EXPECT_NEAR(reachOf(depths, 0.05, spacing), fronts[k], 2.0 * spacing) << "flume " << k;
-    EXPECT_GT(reachOf(depths, 0.01, spacing), runout + 0.1) << "flume " << k;
-    runout = reachOf(depths, 0.01, spacing);
+    const Profile profile = profileAlong(sand, fields, lanes[k]);
+    EXPECT_NEAR(profile.reach(0.05), fronts[k], 2.0 * spacing) << "flume " << k;
+    EXPECT_GT(profile.reach(0.01), runout + 0.1) << "flume " << k;
+    runout = profile.reach(0.01);
   }
   EXPECT_EQ(sand.activeCells(), 0u) << "the sand has come to rest";
   EXPECT_LT(sand.ledger().error(), 1e-6);
@@ -214,8 +201,8 @@ TEST(PaperScenes, FlumesSendTheirFrontsAsFarAsTheEquationsDo) {
 TEST(PaperScenes, DamsOnSandOfTwoDepthsDifferLessWhereALayerFlows) {
   Simulator sand = buildSimulator(sceneNamed("raised_dam_breaks"));
   const auto difference = [&](const Fields& fields, double shallow, double deep) {
-    const std::vector<float> one = depthsAlong(sand, fields, shallow);
-    const std::vector<float> other = depthsAlong(sand, fields, deep);
+    const std::vector<double> one = profileAlong(sand, fields, shallow).depth;
+    const std::vector<double> other = profileAlong(sand, fields, deep).depth;
     double sum = 0.0;
     for (std::size_t k = 0; k < one.size(); ++k) sum += std::abs((one[k] - 0.3) - (other[k] - 1.0));
     return sum / static_cast<double>(one.size());
