@@ -16,6 +16,9 @@ constexpr double kMostAhead = 0.5;
 /// A little more than between two looks of the node at poses. [s]
 constexpr double kRest = 0.025;
 
+/// More than a node needs to subscribe to poses, once it has said that it has the stick. [s]
+constexpr double kConnects = 1.0;
+
 /// tf takes one pose of a time. [s]
 constexpr double kSameTime = 1e-4;
 
@@ -49,7 +52,14 @@ PaintingStick::PaintingStick(ros::NodeHandle node, const std::string& sand_node,
 
 std::optional<NodeAnswer> PaintingStick::news() {
   if (!hasCome(adding_)) return std::nullopt;
-  return adding_.get();
+  const NodeAnswer answer = adding_.get();
+  if (answer.success) followed_ = ros::SteadyTime::now();
+  return answer;
+}
+
+bool PaintingStick::isLost() const {
+  return !followed_.isZero() && publisher_.getNumSubscribers() == 0 &&
+         ros::SteadyTime::now() - followed_ > ros::WallDuration(kConnects);
 }
 
 void PaintingStick::goTo(const Ogre::Vector3& tip, double speed) {
@@ -63,7 +73,7 @@ void PaintingStick::advance(const ros::Time& now) {
   const double ahead = std::clamp((now - advanced_).toSec(), 0.0, kMostAhead);
   advanced_ = now;
   if (publisher_.getNumSubscribers() == 0 || now.isZero()) return;
-  is_followed_ = true;
+  followed_ = ros::SteadyTime::now();
   // It rested until now, or time went back.
   if (stamp_ < now || stamp_ > now + ros::Duration(kMostAhead)) publish(now);
   const ros::Time begin = stamp_;

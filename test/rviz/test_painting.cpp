@@ -19,6 +19,7 @@
 #include "rviz/rviz_window.h"
 #include "shallow_sand/Status.h"
 #include "shallow_sand/client/height_field_subscriber.h"
+#include "shallow_sand/rviz/painting_stick.h"
 #include "shallow_sand/rviz/sand_vertices.h"
 
 namespace shallow_sand {
@@ -196,6 +197,21 @@ TEST_F(Painting, AStickGoesWhereTheMouseGoes) {
   EXPECT_TRUE(window->runUntil([&] { return stick() == nullptr; }, 10.0)) << "the stick stays";
   EXPECT_LT(status_->volume_error, 1e-6);
   EXPECT_EQ(window->errors(), "");
+}
+
+/// As one that died between its answer and its first look at a pose.
+TEST_F(Painting, ANodeThatNeverFollowsAStickHasLostIt) {
+  ros::NodeHandle node;
+  const boost::function<bool(AddBody::Request&, AddBody::Response&)> takes = [](auto&, auto& response) {
+    response.success = 1;
+    return true;
+  };
+  const ros::ServiceServer add_body = node.advertiseService("deaf/add_body", takes);
+  PaintingStick stick(node, "/deaf", "sand", {0.05, 0.3}, Ogre::Vector3::ZERO);
+  EXPECT_FALSE(stick.isLost());
+  ASSERT_TRUE(window->runUntil([&] { return stick.news().has_value(); }, 10.0));
+  EXPECT_FALSE(stick.isLost());
+  EXPECT_TRUE(window->runUntil([&] { return stick.isLost(); }, 10.0));
 }
 
 /// The last test: nobody starts the node again.

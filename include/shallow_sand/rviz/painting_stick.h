@@ -32,8 +32,8 @@ class PaintingStick {
   const std::string& sandNode() const { return sand_node_; }
   /// What the node says of it, once.
   std::optional<NodeAnswer> news();
-  /// Whether the node had it and has no more, as after a restart.
-  bool isLost() const { return is_followed_ && publisher_.getNumSubscribers() == 0; }
+  /// Whether the node had it and has followed it no more for a second, as after a restart.
+  bool isLost() const;
   /// Its tip goes there when it has been everywhere before. [m, m/s at most]
   void goTo(const Ogre::Vector3& tip, double speed);
   /// It stays there for a moment: the node looks at poses now and then, and would cut a corner in the air.
@@ -56,7 +56,7 @@ class PaintingStick {
   std::string frame_;
   ros::Publisher publisher_;
   std::future<NodeAnswer> adding_;
-  bool is_followed_ = false;  // by the node
+  ros::SteadyTime followed_;  // when the node did so for the last time, or said that it would; zero before
   Ogre::Vector3 tip_;         // at the time of the last pose
   std::deque<Leg> way_;       // of the tip, from there on
   ros::Time stamp_;           // of the last pose
