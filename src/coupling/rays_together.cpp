@@ -165,9 +165,9 @@ __attribute__((target("avx2"), flatten)) void castAvx2(const BodyView& body, int
                                                        SolidIntervals* columns) {
   castThrough(body, number, bodies, cells, columns);
 }
-__attribute__((target("avx512f,avx512vl,avx512dq,avx512bw,prefer-vector-width=512"), flatten)) void
-castAvx512(const BodyView& body, int number, const BodiesOverBed& bodies, const Window& cells,
-           SolidIntervals* columns) {
+__attribute__((target("avx512f,avx512vl,avx512dq,avx512bw"), flatten)) void castAvx512(
+    const BodyView& body, int number, const BodiesOverBed& bodies, const Window& cells,
+    SolidIntervals* columns) {
   castThrough(body, number, bodies, cells, columns);
 }
 #endif

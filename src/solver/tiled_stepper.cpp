@@ -20,8 +20,8 @@ __attribute__((target("avx2"), flatten)) void walkAvx2(RowWalker<Step>& walker) 
   walker.walk();
 }
 template <class Step>
-__attribute__((target("avx512f,avx512vl,avx512dq,avx512bw,prefer-vector-width=512"), flatten)) void
-walkAvx512(RowWalker<Step>& walker) {
+__attribute__((target("avx512f,avx512vl,avx512dq,avx512bw"), flatten)) void walkAvx512(
+    RowWalker<Step>& walker) {
   walker.walk();
 }
 #endif
