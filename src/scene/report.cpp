@@ -30,28 +30,28 @@ Report makeReport(const Simulator& simulator, const std::string& scene, double w
 
 void writeReport(const std::string& path, const Report& report) {
   const double per_second = report.wall > 0.0 ? static_cast<double>(report.cell_updates) / report.wall : 0.0;
-  nlohmann::ordered_json json = {{"scene", report.scene},
-                                 {"backend", report.backend},
-                                 {"threads", report.threads},
-                                 {"cells", report.cells},
-                                 {"steps", report.steps},
-                                 {"simulated_s", report.simulated},
-                                 {"wall_s", report.wall},
-                                 {"cell_updates", report.cell_updates},
-                                 {"cell_updates_per_s", per_second},
-                                 {"active_cells_end", report.active_cells_end},
-                                 {"max_speed_end", report.max_speed_end},
-                                 {"volume_start_m3", report.volume.start},
-                                 {"volume_poured_m3", report.volume.poured},
-                                 {"volume_left_m3", report.volume.left},
-                                 {"volume_end_m3", report.volume.now},
-                                 {"volume_error", report.volume.error()},
-                                 {"body_overlap_m3", report.body_overlap}};
+  nlohmann::json json = {{"scene", report.scene},
+                         {"backend", report.backend},
+                         {"threads", report.threads},
+                         {"cells", report.cells},
+                         {"steps", report.steps},
+                         {"simulated_s", report.simulated},
+                         {"wall_s", report.wall},
+                         {"cell_updates", report.cell_updates},
+                         {"cell_updates_per_s", per_second},
+                         {"active_cells_end", report.active_cells_end},
+                         {"max_speed_end", report.max_speed_end},
+                         {"volume_start_m3", report.volume.start},
+                         {"volume_poured_m3", report.volume.poured},
+                         {"volume_left_m3", report.volume.left},
+                         {"volume_end_m3", report.volume.now},
+                         {"volume_error", report.volume.error()},
+                         {"body_overlap_m3", report.body_overlap}};
   if (report.grains > 0) json["grains"] = report.grains;
   replaceFile(path, [&](const std::filesystem::path& part) {
     std::ofstream file(part);
     // A name need not be UTF-8, and a report with a replaced letter is better than none.
-    file << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+    file << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
     file.close();
     if (!file) throw std::runtime_error(path + ": cannot be written");
   });

@@ -1,9 +1,10 @@
-#include <CLI/CLI.hpp>
+#include <boost/program_options.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <optional>
 
 #include "shallow_sand/bodies/shape.h"
@@ -32,19 +33,62 @@ struct Options {
   std::string mesh;
 };
 
-void declareOptions(CLI::App& app, Options& options) {
-  app.add_option("SCENE", options.scene, "Scene file (YAML)")->required();
-  app.add_option("--duration", options.duration, "Time to simulate [s], instead of the scene's");
-  app.add_option("--backend", options.backend, "auto, cpu or cuda, instead of the scene's");
-  app.add_option("--threads", options.threads, "Threads of the cpu backend; 0: as many as there are");
-  app.add_option("--load", options.load,
-                 "Go on from this state, which --save wrote; the scene's times count from its start");
-  app.add_option("--save", options.save, "Write the state at the end to this GeoTIFF");
-  app.add_option("--report", options.report, "Write the figures of the run to this JSON file");
-  app.add_option("--picture", options.picture, "Write a shaded relief of the end to this PNG");
-  app.add_option("--mesh", options.mesh,
-                 "Write the surface at the end as triangles to this .stl, or .ply with colours");
-  app.set_version_flag("--version", SHALLOW_SAND_VERSION);
+namespace po = boost::program_options;
+
+/// An option without a default of its own.
+template <class Value>
+po::typed_value<Value>* valueFor(std::optional<Value>& place) {
+  return po::value<Value>()->notifier([&place](const Value& value) { place = value; });
+}
+
+po::options_description declareOptions(Options& options) {
+  po::options_description declared("Options");
+  const auto add = [&](const char* name, const po::value_semantic* value, const char* text) {
+    declared.add_options()(name, value, text);
+  };
+  add("duration", valueFor(options.duration), "Time to simulate [s], instead of the scene's");
+  add("backend", valueFor(options.backend), "auto, cpu or cuda, instead of the scene's");
+  add("threads", valueFor(options.threads), "Threads of the cpu backend; 0: as many as there are");
+  add("load", po::value(&options.load),
+      "Go on from this state, which --save wrote; the scene's times count from its start");
+  add("save", po::value(&options.save), "Write the state at the end to this GeoTIFF");
+  add("report", po::value(&options.report), "Write the figures of the run to this JSON file");
+  add("picture", po::value(&options.picture), "Write a shaded relief of the end to this PNG");
+  add("mesh", po::value(&options.mesh),
+      "Write the surface at the end as triangles to this .stl, or .ply with colours");
+  declared.add_options()("help", "Tell all this")("version", "Tell the version");
+  return declared;
+}
+
+/// Returns whether there is a scene to run; help and version are told instead of it.
+/// @throws boost::program_options::error, InvalidParameter
+bool parseOptions(int argument_count, char** arguments, Options& options) {
+  const po::options_description declared = declareOptions(options);
+  std::vector<std::string> scenes;
+  po::options_description all;
+  all.add(declared).add_options()("SCENE", po::value(&scenes));
+  po::variables_map given;
+  // An abbreviation of an option would mean another one some day.
+  po::store(po::command_line_parser(argument_count, arguments)
+                .options(all)
+                .positional(po::positional_options_description().add("SCENE", -1))
+                .style(po::command_line_style::unix_style & ~po::command_line_style::allow_guessing)
+                .run(),
+            given);
+  po::notify(given);
+  if (given.count("help") > 0) {
+    std::cout << "sand_run SCENE.yaml [OPTIONS]\nRuns a scene of dry sand and the bodies that move in it.\n\n"
+              << declared;
+    return false;
+  }
+  if (given.count("version") > 0) {
+    std::cout << SHALLOW_SAND_VERSION << '\n';
+    return false;
+  }
+  if (scenes.empty()) throw InvalidParameter("SCENE", "nothing", "a scene file (YAML)");
+  if (scenes.size() > 1) throw InvalidParameter("SCENE", scenes[1], "one scene file only");
+  options.scene = scenes.front();
+  return true;
 }
 
 /// Options go before what the scene says.
@@ -203,14 +247,10 @@ int failed(const std::string& message, ExitCode code) {
 
 int main(int argument_count, char** arguments) {
   Options options;
-  CLI::App app("Runs a scene of dry sand and the bodies that move in it.", "sand_run");
-  declareOptions(app, options);
   try {
-    app.parse(argument_count, arguments);
-  } catch (const CLI::ParseError& error) {
-    const bool asked_for = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);
-    return asked_for ? app.exit(error)
-                     : failed(std::string("sand_run: ") + error.what() + "; see sand_run --help", kBadInput);
+    if (!parseOptions(argument_count, arguments, options)) return kSuccess;
+  } catch (const std::exception& error) {
+    return failed(std::string("sand_run: ") + error.what() + "; see sand_run --help", kBadInput);
   }
   try {
     runScene(options);

@@ -117,17 +117,14 @@ void contacts(benchmark::State& state) {
 }
 
 void registerAll() {
-  benchmark::RegisterBenchmark("coupling", coupling)
-      ->ArgNames({"side", "bodies", "square", "moving", "in_sand"})
-      ->ArgsProduct({{512}, {50}, {25, 90}, {0}, {0, 1}})
-      ->ArgsProduct({{512}, {50}, {25, 90}, {1}, {1}})
-      ->ArgsProduct({{1024}, {200}, {90}, {0, 1}, {1}})
-      ->Args({64, 2, 50, 1, 1})
-      ->UseManualTime()
-      ->Unit(benchmark::kMillisecond);
-  benchmark::RegisterBenchmark("contacts", contacts)
-      ->ArgNames({"side", "bodies", "square"})
-      ->ArgsProduct({{512}, {0, 50}, {25, 90}})
+  benchmark::internal::Benchmark* coupled = benchmark::RegisterBenchmark("coupling", coupling)
+                                                ->ArgNames({"side", "bodies", "square", "moving", "in_sand"});
+  withProduct(coupled, {{512}, {50}, {25, 90}, {0}, {0, 1}});
+  withProduct(coupled, {{512}, {50}, {25, 90}, {1}, {1}});
+  withProduct(coupled, {{1024}, {200}, {90}, {0, 1}, {1}});
+  coupled->Args({64, 2, 50, 1, 1})->UseManualTime()->Unit(benchmark::kMillisecond);
+  withProduct(benchmark::RegisterBenchmark("contacts", contacts)->ArgNames({"side", "bodies", "square"}),
+              {{512}, {0, 50}, {25, 90}})
       ->Args({1024, 200, 90})
       ->Args({64, 2, 50})
       ->Unit(benchmark::kMillisecond);

@@ -8,6 +8,7 @@
 #include "benchmark/counters.h"
 #include "benchmark/quiet_maps.h"
 #include "benchmark/references.h"
+#include "benchmark/run_benchmarks.h"
 #include "benchmark/timing.h"
 #include "shallow_sand/surface/surface_mesh.h"
 
@@ -106,12 +107,12 @@ void registerCpuBenchmarks() {
   const auto add = [](const char* name, void (*function)(benchmark::State&)) {
     return benchmark::RegisterBenchmark(name, function)->UseManualTime();
   };
-  add("moving", moving)->ArgNames({"side", "threads"})->ArgsProduct({{64, 128, 256, 1024, 4096}, {1, 2}});
+  withProduct(add("moving", moving)->ArgNames({"side", "threads"}), {{64, 128, 256, 1024, 4096}, {1, 2}});
   for (const InstructionSet set : instructionSets())
     add("instructions", instructions)->Arg(static_cast<int>(set));
   add("minmod", minmod)->ArgNames({"side"})->Arg(256)->Arg(1024);
   // Corners of tiles lie at multiples of 32 columns and 16 rows.
-  add("patch", patch)->ArgNames({"corner", "threads"})->ArgsProduct({{1024, 1031, 1039}, {1, 2}});
+  withProduct(add("patch", patch)->ArgNames({"corner", "threads"}), {{1024, 1031, 1039}, {1, 2}});
   benchmark::RegisterBenchmark("resting", resting)
       ->ArgNames({"open_edges"})
       ->Arg(0)
@@ -123,9 +124,8 @@ void registerCpuBenchmarks() {
       ->Arg(64)
       ->Arg(1024)
       ->Unit(benchmark::kMicrosecond);
-  add("beside_busy_processes", besideBusyProcesses)
-      ->ArgNames({"side", "others"})
-      ->ArgsProduct({{64, 256, 1024}, {0, 1, 2}});
+  withProduct(add("beside_busy_processes", besideBusyProcesses)->ArgNames({"side", "others"}),
+              {{64, 256, 1024}, {0, 1, 2}});
 }
 
 }  // namespace shallow_sand

@@ -1,5 +1,6 @@
-#include <CLI/CLI.hpp>
+#include <boost/program_options.hpp>
 #include <cstdio>
+#include <iostream>
 #include <string>
 #include <vector>
 
@@ -44,25 +45,34 @@ void registerBenchmarks(Backend backend) {
 }  // namespace
 
 int main(int argument_count, char** arguments) {
+  namespace po = boost::program_options;
   std::string name = "cpu";
-  CLI::App app("Measures how fast the sand is.", "sand_benchmark");
-  app.add_option("--backend", name, "cpu (the default) or cuda")->check(CLI::IsMember({"cpu", "cuda"}));
-  bool table = false;
-  app.add_flag("--table1", table, "only the paper's Table 1, printed beside it [ms per frame of 1/50 s]");
-  app.footer("Options that begin with --benchmark_ are Google Benchmark's.");
-  app.allow_extras();
+  po::options_description declared("Options");
+  declared.add_options()("backend", po::value(&name), "cpu (the default) or cuda")(
+      "table1", "only the paper's Table 1, printed beside it [ms per frame of 1/50 s]")("help",
+                                                                                        "Tell all this");
+  po::variables_map given;
+  std::vector<std::string> others{arguments[0]};
   try {
-    app.parse(argument_count, arguments);
-  } catch (const CLI::ParseError& error) {
-    const bool asked_for = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);
-    return asked_for ? app.exit(error) : failed(std::string(error.what()) + "; see sand_benchmark --help");
+    const po::parsed_options parsed =
+        po::command_line_parser(argument_count, arguments).options(declared).allow_unregistered().run();
+    po::store(parsed, given);
+    po::notify(given);
+    for (const std::string& other : po::collect_unrecognized(parsed.options, po::include_positional))
+      others.push_back(other);
+  } catch (const po::error& error) {
+    return failed(std::string(error.what()) + "; see sand_benchmark --help");
   }
+  if (given.count("help") > 0) {
+    std::cout << "Measures how fast the sand is.\n\n"
+              << declared << "Options that begin with --benchmark_ are Google Benchmark's.\n";
+    return 0;
+  }
+  if (name != "cpu" && name != "cuda") return failed("--backend: " + name + "; expected cpu or cuda");
   const Backend backend = backendFromString(name);
   const std::string reason = unavailable(backend);
   if (!reason.empty()) return failed("nothing is measured: " + reason);
-  std::vector<std::string> others = app.remaining();
-  others.insert(others.begin(), arguments[0]);
-  if (table) {
+  if (given.count("table1") > 0) {
     Table1Printer printer;
     return runBenchmarks(
         others, [&] { registerTable1(backend); }, &printer);

@@ -23,7 +23,7 @@ ROS_ROOMS = {"ros", "client", "rviz"}
 # Libraries that only some rooms know, and there perhaps only in .cpp files.
 LIBRARIES = [
     (re.compile(r"(fcl|geometric_shapes|resource_retriever|urdf_model|urdf_parser|urdf_world)/|tinyxml2\.h$"), {"bodies"}, {".cpp"}),
-    (re.compile(r"(gdal|ogr_|cpl_)\w*\.h$|nlohmann/|CLI/"), {"scene"}, None),
+    (re.compile(r"(gdal|ogr_|cpl_)\w*\.h$|nlohmann/|boost/program_options"), {"scene"}, None),
     (re.compile(r"yaml-cpp/"), {"scene", "ros"}, None),
 ]
 

@@ -1,8 +1,10 @@
-#include <CLI/CLI.hpp>
+#include <boost/program_options.hpp>
 #include <cstdint>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <string>
 #include <thread>
 
@@ -156,18 +158,42 @@ std::string compare(const Column& column, const std::string& name, const Options
   return comparison.figures();
 }
 
+void requireValid(const Options& options) {
+  const auto requirePositive = [](const char* name, double value) {
+    if (!(value > 0.0)) throw InvalidParameter(name, std::to_string(value), "a number above 0");
+  };
+  requirePositive("--threads", options.threads);
+  requirePositive("--until", options.until);
+  for (const int height : options.heights) requirePositive("--heights", height);
+  if (!std::filesystem::is_directory(options.folder))
+    throw InvalidParameter("--output", options.folder, "a folder that exists");
+}
+
 }  // namespace
 }  // namespace shallow_sand
 
 int main(int argc, char** argv) {
   using namespace shallow_sand;
   Options options;
-  CLI::App app("Columns of sand collapse on a height field and in three dimensions");
-  app.add_option("--output", options.folder, "folder for CSV files")->check(CLI::ExistingDirectory);
-  app.add_option("--threads", options.threads, "of both solvers")->check(CLI::PositiveNumber);
-  app.add_option("--until", options.until, "[s]")->check(CLI::PositiveNumber);
-  app.add_option("--heights", options.heights, "of the columns [cells]")->check(CLI::PositiveNumber);
-  CLI11_PARSE(app, argc, argv);
+  namespace po = boost::program_options;
+  po::options_description declared("Columns of sand collapse on a height field and in three dimensions");
+  declared.add_options()("output", po::value(&options.folder), "folder for CSV files")(
+      "threads", po::value(&options.threads), "of both solvers")("until", po::value(&options.until), "[s]")(
+      "heights", po::value(&options.heights)->multitoken(), "of the columns [cells]")("help",
+                                                                                      "tell all this");
+  try {
+    po::variables_map given;
+    po::store(po::command_line_parser(argc, argv).options(declared).positional({}).run(), given);
+    po::notify(given);
+    if (given.count("help") > 0) {
+      std::cout << declared;
+      return 0;
+    }
+    requireValid(options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "solver_3d_comparison: %s\n", error.what());
+    return 2;
+  }
   std::ofstream figures(options.folder + "/figures.csv");
   figures << Comparison::kFiguresHeader << '\n';
   for (const int height : options.heights) {
