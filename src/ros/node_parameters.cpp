@@ -4,7 +4,11 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <limits>
+#include <locale>
+#include <sstream>
 #include <type_traits>
 
 #include "shallow_sand/core/nearest_name.h"
@@ -17,6 +21,17 @@ namespace shallow_sand {
 
 namespace {
 
+/// With all of its digits, and infinities as they are read: yaml-cpp 0.6 writes neither.
+YAML::Node toYaml(double value) {
+  if (std::isinf(value)) return YAML::Node(value > 0.0 ? ".inf" : "-.inf");
+  if (std::isnan(value)) return YAML::Node(".nan");
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text.precision(std::numeric_limits<double>::max_digits10);
+  text << value;
+  return YAML::Node(text.str());
+}
+
 /// @throws XmlRpc::XmlRpcException for dates and binary data
 YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
   switch (value.getType()) {
@@ -25,7 +40,7 @@ YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
     case XmlRpc::XmlRpcValue::TypeInt:
       return YAML::Node(static_cast<int>(value));
     case XmlRpc::XmlRpcValue::TypeDouble:
-      return YAML::Node(static_cast<double>(value));
+      return toYaml(static_cast<double>(value));
     case XmlRpc::XmlRpcValue::TypeArray: {
       YAML::Node sequence(YAML::NodeType::Sequence);
       for (int k = 0; k < value.size(); ++k) sequence.push_back(toYaml(value[k]));

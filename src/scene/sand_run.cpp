@@ -56,7 +56,7 @@ po::options_description declareOptions(Options& options) {
   add("picture", po::value(&options.picture), "Write a shaded relief of the end to this PNG");
   add("mesh", po::value(&options.mesh),
       "Write the surface at the end as triangles to this .stl, or .ply with colours");
-  declared.add_options()("help", "Tell all this")("version", "Tell the version");
+  declared.add_options()("help,h", "Tell all this")("version", "Tell the version");
   return declared;
 }
 

@@ -56,6 +56,7 @@ TEST(SandRun, RefusesBadArguments) {
   expectRefused("", "SCENE");
   expectRefused(scene + " --colour red", "--colour");
   expectRefused(scene + " more.yaml", "more.yaml");
+  expectRefused(scene + " --dur 0.1", "--dur");
   expectRefused(scene + " --duration", "--duration");
   expectRefused(scene + " --duration long", "--duration");
   expectRefused(scene + " --duration -1", "--duration");

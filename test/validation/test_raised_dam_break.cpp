@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <iterator>
 
 #include "figures.h"
@@ -23,7 +24,9 @@ Profile above(Profile profile, double base) {
 YAML::Node sceneOf(double base, double layer, double spacing) {
   YAML::Node scene = channelFile("raised_dam_break", spacing);
   scene["sand"][0]["depth"] = base;
-  scene["material"]["dilute_layer"]["depth"] = layer;
+  YAML::Node depth = scene["material"]["dilute_layer"]["depth"];
+  depth = layer;
+  if (std::isinf(layer)) depth = ".inf";  // yaml-cpp 0.6 writes inf, and does not read it
   return scene;
 }
 
