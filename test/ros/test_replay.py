@@ -12,6 +12,7 @@ import unittest
 import xmlrpc.client
 
 import rosgraph
+import roslib.packages
 import rospy
 import rostest
 from dynamic_reconfigure.client import Client
@@ -108,7 +109,9 @@ class Recorder:
 
     def __init__(self, path, node, world):
         topic = node.name + "/calls"
-        self.process = subprocess.Popen(["rosbag", "record", "-O", path, "/tf", topic, "__name:=recorder"], stdout=subprocess.DEVNULL)
+        # Not through the command rosbag, which may keep a signal to itself.
+        record = roslib.packages.find_node("rosbag", "record")[0]
+        self.process = subprocess.Popen([record, "-O", path, "/tf", topic, "__name:=recorder"], stdout=subprocess.DEVNULL)
         master = rosgraph.Master("/test")
 
         def connected():
