@@ -66,8 +66,9 @@ void main() {
   vec2 tilt = normal_value_openness.xy;
   vec3 up = normalize(vec3(tilt, sqrt(max(1.0 - dot(tilt, tilt), 0.0))));
   vec3 sand = sand_color.rgb;
-  // Only the cut along the map's sides stands upright; a scale of colours says nothing there.
-  if (color_by > 0.5 && abs(up.z) > 1e-4) {
+  // Only the cut along the map's sides stands upright, but for roundings; a scale of colours says nothing there.
+  bool is_surface = up.z > 3e-3;
+  if (color_by > 0.5 && is_surface) {
     float shown = value;
     if (color_by < 1.5) shown = place.z;
     else if (color_by < 2.5) shown = depth;
@@ -85,7 +86,7 @@ void main() {
   float sky = (0.25 + 0.75 * openness * openness) * (0.65 + 0.35 * up.z);
   color *= 0.92 * sun * mix(0.55, 1.0, openness) * vec3(1.05, 1.0, 0.92) + 0.50 * sky * vec3(0.93, 0.98, 1.10);
 
-  if (contour_interval > 0.0 && abs(up.z) > 1e-4) {
+  if (contour_interval > 0.0 && is_surface) {
     // Half an interval off, for level ground mostly lies at a round number.
     float level = place.z / contour_interval + 0.5;
     float levels_in_pixel = fwidth(level);

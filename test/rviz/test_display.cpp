@@ -34,18 +34,37 @@ class Projection {
     const Ogre::Vector3 place(static_cast<float>(map_.origin_x) + (i + 0.5f) * map_.spacing,
                               static_cast<float>(map_.origin_y) + (j + 0.5f) * map_.spacing,
                               groundElevation(map_, cell));
-    // The sand's frame is the fixed frame here.
+    const std::optional<SandPlace> first = window->sand()->meet(
+        Ogre::Ray(camera_.getDerivedPosition(), (place - camera_.getDerivedPosition()).normalisedCopy()));
+    if (!first || first->in_map.distance(place) > 2.0f * map_.spacing) return std::nullopt;
+    return pixelOf(place);
+  }
+
+  /// Of the cut through the sand where x is largest, half way down; none if it is seen from behind.
+  std::vector<QPoint> pixelsOfCut() const {
+    std::vector<QPoint> pixels;
+    const float x = static_cast<float>(map_.origin_x) + static_cast<float>(map_.columns) * map_.spacing;
+    if (camera_.getDerivedPosition().x < x) return pixels;
+    for (std::uint32_t j = 0; j < map_.rows; ++j) {
+      const std::size_t cell = static_cast<std::size_t>(j + 1) * map_.columns - 1;
+      const float y = static_cast<float>(map_.origin_y) + (static_cast<float>(j) + 0.5f) * map_.spacing;
+      const float z = groundElevation(map_, cell) - 0.5f * map_.depth[cell];
+      // The cut stands where the middles of the outermost cells are.
+      if (const auto pixel = pixelOf({x - 0.5f * map_.spacing, y, z})) pixels.push_back(*pixel);
+    }
+    return pixels;
+  }
+
+ private:
+  /// The sand's frame is the fixed frame here.
+  std::optional<QPoint> pixelOf(const Ogre::Vector3& place) const {
     const Ogre::Vector3 seen = camera_.getProjectionMatrix() * (camera_.getViewMatrix() * place);
     const QPoint pixel(static_cast<int>((0.5f + 0.5f * seen.x) * static_cast<float>(picture_.width())),
                        static_cast<int>((0.5f - 0.5f * seen.y) * static_cast<float>(picture_.height())));
     if (!picture_.rect().contains(pixel)) return std::nullopt;
-    const std::optional<SandPlace> first = window->sand()->meet(
-        Ogre::Ray(camera_.getDerivedPosition(), (place - camera_.getDerivedPosition()).normalisedCopy()));
-    if (!first || first->in_map.distance(place) > 2.0f * map_.spacing) return std::nullopt;
     return pixel;
   }
 
- private:
   const HeightField& map_;
   const QImage& picture_;
   const Ogre::Camera& camera_;
@@ -126,12 +145,15 @@ TEST(Display, ShowsWhereTheRobotDigs) {
 TEST(Display, ColorsTellWhatIsAskedFor) {
   HeightFieldDisplay* display = window->sand();
   ASSERT_NE(display, nullptr);
+  const std::vector<QPoint> cut = Projection(*display->field(), window->picture()).pixelsOfCut();
+  ASSERT_GT(cut.size(), 20u);
   for (const char* what : {"Elevation", "Depth", "Slope", "Speed", "Change"}) {
     display->subProp("Color By")->setValue(what);
     ASSERT_TRUE(window->runFrames(4, 20.0));
     const QImage picture = window->picture();
     picture.save(QString(PICTURES "colored_by_%1.png").arg(QString(what).toLower()));
     EXPECT_LT(shareOfSand(picture), 0.3) << what;
+    EXPECT_GT(shareOf(cut, [&](const QPoint& pixel) { return isSand(picture.pixel(pixel)); }), 0.98) << what;
   }
   display->subProp("Color By")->setValue("Sand");
   ASSERT_TRUE(window->runFrames(4, 20.0));
