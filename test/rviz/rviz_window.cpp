@@ -34,7 +34,8 @@ RvizWindow::RvizWindow(int& argc, char** argv, const std::string& view)
 RvizWindow::~RvizWindow() = default;
 
 void RvizWindow::load(const std::string& view) {
-  frame_->loadDisplayConfigHelper(view, true);
+  frame_->setWindowModified(false);  // else it asks whether to save the last view
+  frame_->loadDisplayConfig(QString::fromStdString(view));
   frame_->show();
 }
 
