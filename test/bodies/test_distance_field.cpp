@@ -416,9 +416,9 @@ TEST(DistanceField, signIsThatOfTheWindingNumberWhereAFaceIsMissing) {
     if (std::abs(found) < kRounding) return;
     const bool inside = found < 0.0;
     const double winding = windingNumber(open, point);
-    if (std::abs(winding - 0.5) > kSeriesError) {
-      EXPECT_EQ(inside, winding > 0.5) << "at " << point.transpose() << ", winding number " << winding;
-    }
+    // As just above the middle of the missing face.
+    if (std::abs(winding - 0.5) < kSeriesError) return;
+    EXPECT_EQ(inside, winding > 0.5) << "at " << point.transpose() << ", winding number " << winding;
     // What common sense says: the lower half of the box is inside; beside, below and above it is outside.
     const double distance = boxDistance(size, point);
     if (distance < 0.0 && point.z() < 0.0) {
