@@ -159,8 +159,8 @@ std::string compare(const Column& column, const std::string& name, const Options
 }
 
 void requireValid(const Options& options) {
-  const auto requirePositive = [](const char* name, double value) {
-    if (!(value > 0.0)) throw InvalidParameter(name, std::to_string(value), "a number above 0");
+  const auto requirePositive = [](const char* name, auto value) {
+    if (!(value > 0)) throw InvalidParameter(name, std::to_string(value), "a number above 0");
   };
   requirePositive("--threads", options.threads);
   requirePositive("--until", options.until);
