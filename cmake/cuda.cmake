@@ -79,8 +79,7 @@ if(known_options MATCHES "--no-compress ")
 endif()
 
 set(CMAKE_CUDA_ARCHITECTURES OFF)
-# Of the standard and the shared runtime CMake 3.16 knows nothing. 20012 and
-# no-cpp: headers of Eigen 3.4 and 3.3.
+# The standard and the shared runtime are flags, too, for CMake 3.16 has no words for them. 20012: headers of Eigen 3.4; no-cpp: of 3.3.
 set(CMAKE_CUDA_RUNTIME_LIBRARY Shared)
 string(APPEND CMAKE_CUDA_FLAGS
   " -std=c++17 --cudart=shared${gencode}${uncompressed} --fmad=false --expt-relaxed-constexpr -Werror=all-warnings --diag-suppress=20012"

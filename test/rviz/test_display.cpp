@@ -43,14 +43,15 @@ class Projection {
   /// Of the cut through the sand where x is largest, half way down; none if it is seen from behind.
   std::vector<QPoint> pixelsOfCut() const {
     std::vector<QPoint> pixels;
-    const float x = static_cast<float>(map_.origin_x) + static_cast<float>(map_.columns) * map_.spacing;
+    // The cut stands where the middles of the outermost cells are.
+    const float x =
+        static_cast<float>(map_.origin_x) + (static_cast<float>(map_.columns) - 0.5f) * map_.spacing;
     if (camera_.getDerivedPosition().x < x) return pixels;
     for (std::uint32_t j = 0; j < map_.rows; ++j) {
       const std::size_t cell = static_cast<std::size_t>(j + 1) * map_.columns - 1;
       const float y = static_cast<float>(map_.origin_y) + (static_cast<float>(j) + 0.5f) * map_.spacing;
       const float z = groundElevation(map_, cell) - 0.5f * map_.depth[cell];
-      // The cut stands where the middles of the outermost cells are.
-      if (const auto pixel = pixelOf({x - 0.5f * map_.spacing, y, z})) pixels.push_back(*pixel);
+      if (const auto pixel = pixelOf({x, y, z})) pixels.push_back(*pixel);
     }
     return pixels;
   }
