@@ -55,7 +55,11 @@ int main(int argument_count, char** arguments) {
   std::vector<std::string> others{arguments[0]};
   try {
     const po::parsed_options parsed =
-        po::command_line_parser(argument_count, arguments).options(declared).allow_unregistered().run();
+        po::command_line_parser(argument_count, arguments)
+            .options(declared)
+            .allow_unregistered()
+            .style(po::command_line_style::unix_style & ~po::command_line_style::allow_guessing)
+            .run();
     po::store(parsed, given);
     po::notify(given);
     for (const std::string& other : po::collect_unrecognized(parsed.options, po::include_positional))

@@ -183,7 +183,12 @@ int main(int argc, char** argv) {
                                                                                       "tell all this");
   try {
     po::variables_map given;
-    po::store(po::command_line_parser(argc, argv).options(declared).positional({}).run(), given);
+    po::store(po::command_line_parser(argc, argv)
+                  .options(declared)
+                  .positional({})
+                  .style(po::command_line_style::unix_style & ~po::command_line_style::allow_guessing)
+                  .run(),
+              given);
     po::notify(given);
     if (given.count("help") > 0) {
       std::cout << declared;
